@@ -1,0 +1,27 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Exceptions of the human model."""
+
+
+class HumanModelError(ValueError):
+    """Base of every error this package raises on bad input."""
+
+
+class SubjectError(HumanModelError):
+    """A field of the subject is missing, of the wrong kind or out of its range."""
+
+
+class MotionError(HumanModelError):
+    """The arrays of a motion do not fit together."""
+
+
+class AnthropometryError(HumanModelError):
+    """A length, mass or inertia is missing or not physical."""
+
+
+class ChainError(HumanModelError):
+    """A chain table is inconsistent."""
+
+
+class StrengthError(HumanModelError):
+    """A joint strength is asked for that the tables do not hold."""
