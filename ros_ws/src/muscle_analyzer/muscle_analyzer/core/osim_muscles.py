@@ -1,0 +1,174 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Reads muscles, their paths and the surfaces that they wrap over from an `.osim` file."""
+
+from __future__ import annotations
+
+from xml.etree.ElementTree import Element
+
+import numpy as np
+
+from muscle_analyzer.core.exceptions import OsimFormatError, UnsupportedElementError
+from muscle_analyzer.core.osim_frames import FrameResolver
+from muscle_analyzer.core.osim_model import Frame, Muscle, PathPoint, PathWrap, WrapObject
+from muscle_analyzer.core.osim_xml import OsimXml, body_fixed_xyz
+
+_POINT_KINDS = {
+    'PathPoint': 'fixed',
+    'ConditionalPathPoint': 'conditional',
+    'MovingPathPoint': 'moving',
+}
+_WRAP_KINDS: dict[str, tuple[str, tuple[tuple[str, int], ...]]] = {
+    'WrapCylinder': ('cylinder', (('radius', 1), ('length', 1))),
+    'WrapSphere': ('sphere', (('radius', 1),)),
+    'WrapEllipsoid': ('ellipsoid', (('dimensions', 3),)),
+    'WrapTorus': ('torus', (('inner_radius', 1), ('outer_radius', 1))),
+}
+_OWN_FIELDS = frozenset(
+    {
+        'max_isometric_force',
+        'optimal_fiber_length',
+        'tendon_slack_length',
+        'pennation_angle_at_optimal',
+        'appliesForce',
+    }
+)
+
+
+def read_muscle(xml: OsimXml, frames: FrameResolver, element: Element) -> Muscle:
+    """Read one muscle element with its path.
+
+    Raises
+    ------
+    OsimFormatError
+        If a parameter is missing or not positive, or the path has fewer than two points.
+    UnsupportedElementError
+        If the path has points of a type that is not modelled.
+    """
+    path = element.find('GeometryPath')
+    if path is None:
+        raise UnsupportedElementError(f'{xml.where(element)}: path is no <GeometryPath>')
+    points = tuple(_read_point(xml, frames, p) for p in xml.objects('PathPointSet', path))
+    if len(points) < 2:
+        raise OsimFormatError(f'{xml.where(element)}: path of {len(points)} point(s)')
+    positive = {}
+    for tag in ('max_isometric_force', 'optimal_fiber_length', 'tendon_slack_length'):
+        positive[tag] = xml.number(element, tag)
+        if positive[tag] <= 0.0:
+            raise OsimFormatError(f'{xml.where(element)} <{tag}>: {positive[tag]} is not positive')
+    return Muscle(
+        name=xml.name(element),
+        kind=element.tag,
+        pennation_angle=xml.number(element, 'pennation_angle_at_optimal'),
+        points=points,
+        wraps=tuple(_read_path_wrap(xml, w) for w in xml.objects('PathWrapSet', path)),
+        properties=_read_properties(element),
+        **positive,
+    )
+
+
+def _read_properties(element: Element) -> dict[str, float]:
+    """Return the simple numerical and true/false children that are not fields of their own."""
+    properties = {}
+    for child in element:
+        text = (child.text or '').strip()
+        if child.tag in _OWN_FIELDS or len(child) or not text:
+            continue
+        if text in ('true', 'false'):
+            properties[child.tag] = float(text == 'true')
+        else:
+            try:
+                properties[child.tag] = float(text)
+            except ValueError:
+                continue  # text properties (descriptions) carry nothing that is computed with
+    return properties
+
+
+def _read_point(xml: OsimXml, frames: FrameResolver, element: Element) -> PathPoint:
+    if element.tag not in _POINT_KINDS:
+        raise UnsupportedElementError(f'{xml.where(element)}: this path point is not modelled')
+    kind = _POINT_KINDS[element.tag]
+    frame = frames.of_socket(element, 'socket_parent_frame')
+    name = xml.name(element)
+    if kind == 'moving':
+        return _read_moving_point(xml, frame, element, name)
+    location = frame.translation + frame.rotation @ xml.numbers(element, 'location', 3)
+    if kind == 'fixed':
+        return PathPoint(name, kind, frame.body, location)
+    low, high = xml.numbers(element, 'range', 2)
+    coordinate = xml.text(element, 'socket_coordinate').rsplit('/', 1)[-1]
+    return PathPoint(name, kind, frame.body, location, coordinate, (float(low), float(high)))
+
+
+def _read_moving_point(xml: OsimXml, frame: Frame, element: Element, name: str) -> PathPoint:
+    if np.any(frame.translation) or not np.array_equal(frame.rotation, np.eye(3)):
+        raise UnsupportedElementError(f'{xml.where(element)}: a moving point in an offset frame')
+    functions = []
+    coordinates = []
+    for axis in 'xyz':
+        holder = element.find(f'{axis}_location')
+        if holder is None:
+            raise OsimFormatError(f'{xml.where(element)} has no <{axis}_location>')
+        functions.append(xml.function(holder))
+        socket = xml.text(element, f'socket_{axis}_coordinate')
+        coordinates.append(socket.rsplit('/', 1)[-1])
+    location = np.array([function.derivatives(0.0)[0] for function in functions])
+    return PathPoint(
+        name,
+        'moving',
+        frame.body,
+        location,
+        location_functions=tuple(functions),
+        location_coordinates=tuple(coordinates),
+    )
+
+
+def _read_path_wrap(xml: OsimXml, element: Element) -> PathWrap:
+    first, last = (
+        xml.numbers(element, 'range', 2) if element.find('range') is not None else (-1.0, -1.0)
+    )
+    method = xml.text(element, 'method') if element.find('method') is not None else 'hybrid'
+    return PathWrap(xml.text(element, 'wrap_object'), method, (int(first), int(last)))
+
+
+def read_wrap_objects(xml: OsimXml, frames: FrameResolver) -> tuple[WrapObject, ...]:
+    """Read the wrap objects of every body and offset frame.
+
+    Raises
+    ------
+    UnsupportedElementError
+        If a surface is of a type that is not modelled.
+    OsimFormatError
+        If a dimension is not positive.
+    """
+    owners = {'/ground': xml.model.find('Ground')}
+    owners |= {f'/bodyset/{xml.name(body)}': body for body in xml.objects('BodySet')}
+    owners |= {path: element for path, element in frames.paths().items() if element is not None}
+    found = []
+    for path, owner in owners.items():
+        if owner is not None:
+            for element in xml.objects('WrapObjectSet', owner):
+                found.append(_read_wrap_object(xml, frames.in_owner(path), element))
+    return tuple(found)
+
+
+def _read_wrap_object(xml: OsimXml, owner: Frame, element: Element) -> WrapObject:
+    if element.tag not in _WRAP_KINDS:
+        raise UnsupportedElementError(f'{xml.where(element)}: this wrap object is not modelled')
+    kind, fields = _WRAP_KINDS[element.tag]
+    dimensions = np.concatenate([xml.numbers(element, tag, count) for tag, count in fields])
+    if np.any(dimensions <= 0.0):
+        raise OsimFormatError(f'{xml.where(element)}: dimensions {dimensions} are not positive')
+    rotation = body_fixed_xyz(xml.numbers(element, 'xyz_body_rotation', 3))
+    return WrapObject(
+        name=xml.name(element),
+        kind=kind,
+        frame=Frame(
+            owner.body,
+            owner.rotation @ rotation,
+            owner.translation + owner.rotation @ xml.numbers(element, 'translation', 3),
+        ),
+        active=xml.flag(element, 'active', True),
+        quadrant=xml.text(element, 'quadrant') if element.find('quadrant') is not None else 'all',
+        dimensions=tuple(float(value) for value in dimensions),
+    )
