@@ -1,0 +1,263 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Positions, velocities and accelerations of all bodies, and their Jacobians; compiled.
+
+Forward recursion over the tree in ground axes (the thesis' equations 2.1 to 2.4 with the joints of
+`.osim` files in place of Denavit-Hartenberg links). Jacobians are with respect to the *independent*
+coordinates: a coupled coordinate's motion counts for the coordinate that drives it.
+
+Spatial quantities are (angular, linear) and refer to the ground's origin: the Jacobian of a body gives
+its angular velocity and the velocity of the body-fixed point that is at the ground's origin, so that
+the velocity of a point at p is `v + w x p`, and the wrench of a force F at p is `(p x F, F)`. With
+one reference point for all bodies, wrenches of different bodies add up without being shifted.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from muscle_analyzer.core.functions import evaluate
+from muscle_analyzer.core.multibody import Tree
+
+Array = NDArray[np.float64]
+
+
+class CoordinateState(NamedTuple):
+    """All tree coordinates x (n_x,) with time derivatives, and dx/dq of their own driver."""
+
+    value: Array
+    rate: Array
+    acceleration: Array
+    gain: Array
+
+
+class BodyState(NamedTuple):
+    """Motion of every body, ground axes.
+
+    Attributes
+    ----------
+    position : (n_b, 3) array
+        Origins of the bodies, m.
+    rotation : (n_b, 3, 3) array
+        Ground <- body.
+    angular_velocity, velocity : (n_b, 3) arrays
+        rad/s, and m/s of the origins.
+    angular_acceleration, acceleration : (n_b, 3) arrays
+        rad/s^2, and m/s^2 of the origins.
+    joint_position : (n_b, 3) array
+        Where the joint that carries the body is (its moved frame's origin), m.
+    screw : (n_e, 6) array
+        Spatial axis of each elementary motion about the ground's origin.
+    tree_gain, gain : (n_e,) arrays
+        Rate of each elementary motion per rate of its tree coordinate and of its independent one.
+    """
+
+    position: Array
+    rotation: Array
+    angular_velocity: Array
+    velocity: Array
+    angular_acceleration: Array
+    acceleration: Array
+    joint_position: Array
+    screw: Array
+    tree_gain: Array
+    gain: Array
+
+
+@njit(cache=True)
+def coordinate_state(tree: Tree, q: Array, qd: Array, qdd: Array) -> CoordinateState:
+    """Return all tree coordinates and their derivatives from the independent ones.
+
+    Parameters
+    ----------
+    tree : Tree
+    q, qd, qdd : (n_q,) arrays
+        Independent coordinates in rad or m, their rates and accelerations.
+    """
+    n = tree.independent.size
+    value = np.empty(n)
+    rate = np.zeros(n)
+    acceleration = np.zeros(n)
+    gain = np.zeros(n)
+    for i in range(n):
+        k = tree.independent[i]
+        if k < 0:
+            value[i] = evaluate(tree.functions, tree.coupling_function[i], 0.0)[0]
+            continue
+        f, f1, f2 = evaluate(tree.functions, tree.coupling_function[i], q[k])
+        value[i] = f
+        gain[i] = f1
+        rate[i] = f1 * qd[k]
+        acceleration[i] = f1 * qdd[k] + f2 * qd[k] * qd[k]
+    return CoordinateState(value, rate, acceleration, gain)
+
+
+@njit(cache=True, inline='always')
+def _cross(ax, ay, az, bx, by, bz):  # type: ignore[no-untyped-def]
+    return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+
+
+@njit(cache=True)
+def _turn_about(rotation: Array, axis: Array, angle: float) -> None:
+    """Multiply a rotation matrix from the right by a turn about an axis of its own frame."""
+    s = np.sin(angle)
+    c = np.cos(angle)
+    x, y, z = axis
+    for i in range(3):
+        a, b, d = rotation[i, 0], rotation[i, 1], rotation[i, 2]
+        along = (a * x + b * y + d * z) * (1.0 - c)
+        rotation[i, 0] = c * a + along * x + s * (b * z - d * y)
+        rotation[i, 1] = c * b + along * y + s * (d * x - a * z)
+        rotation[i, 2] = c * d + along * z + s * (a * y - b * x)
+
+
+@njit(cache=True)
+def _product(a: Array, b: Array, out: Array) -> None:
+    for i in range(3):
+        for j in range(3):
+            out[i, j] = a[i, 0] * b[0, j] + a[i, 1] * b[1, j] + a[i, 2] * b[2, j]
+
+
+@njit(cache=True)
+def forward_kinematics(tree: Tree, q: Array, qd: Array, qdd: Array) -> BodyState:
+    """Return the motion of every body.
+
+    Parameters
+    ----------
+    tree : Tree
+    q, qd, qdd : (n_q,) arrays
+        Independent coordinates in rad or m, their rates and accelerations.
+    """
+    n_b = tree.parent.size
+    n_e = tree.motion_turns.size
+    x = coordinate_state(tree, q, qd, qdd)
+    p = np.zeros((n_b, 3))
+    rot = np.zeros((n_b, 3, 3))
+    w = np.zeros((n_b, 3))
+    v = np.zeros((n_b, 3))
+    al = np.zeros((n_b, 3))
+    a = np.zeros((n_b, 3))
+    pivot = np.zeros((n_b, 3))
+    screw = np.zeros((n_e, 6))
+    tree_gain = np.zeros(n_e)
+    gain = np.zeros(n_e)
+    # Angle or distance of each motion with its two time derivatives.
+    move = np.zeros((n_e, 3))
+    for e in range(n_e):
+        k = tree.motion_coordinate[e]
+        if k < 0:
+            move[e, 0] = evaluate(tree.functions, tree.motion_function[e], 0.0)[0]
+            continue
+        f, f1, f2 = evaluate(tree.functions, tree.motion_function[e], x.value[k])
+        move[e, 0] = f
+        move[e, 1] = f1 * x.rate[k]
+        move[e, 2] = f1 * x.acceleration[k] + f2 * x.rate[k] * x.rate[k]
+        tree_gain[e] = f1
+        gain[e] = f1 * x.gain[k]
+    frame = np.zeros((3, 3))
+    r = np.zeros(3)
+    r1 = np.zeros(3)
+    r2 = np.zeros(3)
+    for i in range(3):
+        rot[0, i, i] = 1.0
+    for b in range(1, n_b):
+        m = tree.parent[b]
+        _product(rot[m], tree.parent_rotation[b], frame)
+        for i in range(3):
+            r[i] = 0.0
+            r1[i] = 0.0
+            r2[i] = 0.0
+            for j in range(3):
+                r[i] += rot[m, i, j] * tree.parent_translation[b, j]
+        for e in range(tree.first_motion[b], tree.first_motion[b + 1]):
+            if not tree.motion_turns[e]:
+                for i in range(3):
+                    s = 0.0
+                    for j in range(3):
+                        s += frame[i, j] * tree.motion_axis[e, j]
+                    screw[e, 3 + i] = s
+                    r[i] += s * move[e, 0]
+                    r1[i] += s * move[e, 1]
+                    r2[i] += s * move[e, 2]
+        wx, wy, wz = w[m, 0], w[m, 1], w[m, 2]
+        lx, ly, lz = al[m, 0], al[m, 1], al[m, 2]
+        cx, cy, cz = _cross(wx, wy, wz, r[0], r[1], r[2])
+        dx, dy, dz = _cross(wx, wy, wz, cx + 2.0 * r1[0], cy + 2.0 * r1[1], cz + 2.0 * r1[2])
+        ex, ey, ez = _cross(lx, ly, lz, r[0], r[1], r[2])
+        vx, vy, vz = v[m, 0] + cx + r1[0], v[m, 1] + cy + r1[1], v[m, 2] + cz + r1[2]
+        ax = a[m, 0] + ex + dx + r2[0]
+        ay = a[m, 1] + ey + dy + r2[1]
+        az = a[m, 2] + ez + dz + r2[2]
+        for i in range(3):
+            pivot[b, i] = p[m, i] + r[i]
+        for e in range(tree.first_motion[b], tree.first_motion[b + 1]):
+            if tree.motion_turns[e]:
+                u = tree.motion_axis[e]
+                sx = frame[0, 0] * u[0] + frame[0, 1] * u[1] + frame[0, 2] * u[2]
+                sy = frame[1, 0] * u[0] + frame[1, 1] * u[1] + frame[1, 2] * u[2]
+                sz = frame[2, 0] * u[0] + frame[2, 1] * u[1] + frame[2, 2] * u[2]
+                mx, my, mz = _cross(pivot[b, 0], pivot[b, 1], pivot[b, 2], sx, sy, sz)
+                screw[e, 0], screw[e, 1], screw[e, 2] = sx, sy, sz
+                screw[e, 3], screw[e, 4], screw[e, 5] = mx, my, mz
+                rate = move[e, 1]
+                cx, cy, cz = _cross(wx, wy, wz, sx, sy, sz)
+                lx += sx * move[e, 2] + cx * rate
+                ly += sy * move[e, 2] + cy * rate
+                lz += sz * move[e, 2] + cz * rate
+                wx += sx * rate
+                wy += sy * rate
+                wz += sz * rate
+                _turn_about(frame, u, move[e, 0])
+        _product(frame, tree.child_rotation[b], rot[b])
+        t = tree.child_translation[b]
+        for i in range(3):
+            r[i] = -(rot[b, i, 0] * t[0] + rot[b, i, 1] * t[1] + rot[b, i, 2] * t[2])
+            p[b, i] = pivot[b, i] + r[i]
+        cx, cy, cz = _cross(wx, wy, wz, r[0], r[1], r[2])
+        dx, dy, dz = _cross(wx, wy, wz, cx, cy, cz)
+        ex, ey, ez = _cross(lx, ly, lz, r[0], r[1], r[2])
+        w[b, 0], w[b, 1], w[b, 2] = wx, wy, wz
+        al[b, 0], al[b, 1], al[b, 2] = lx, ly, lz
+        v[b, 0], v[b, 1], v[b, 2] = vx + cx, vy + cy, vz + cz
+        a[b, 0], a[b, 1], a[b, 2] = ax + ex + dx, ay + ey + dy, az + ez + dz
+    return BodyState(p, rot, w, v, al, a, pivot, screw, tree_gain, gain)
+
+
+@njit(cache=True)
+def body_jacobians(tree: Tree, state: BodyState) -> Array:
+    """Return the spatial Jacobians (n_b, 6, n_q) of all bodies about the ground's origin."""
+    n_b = tree.parent.size
+    jacobian = np.zeros((n_b, 6, tree.n_independent[0]))
+    for b in range(1, n_b):
+        jacobian[b] = jacobian[tree.parent[b]]
+        for e in range(tree.first_motion[b], tree.first_motion[b + 1]):
+            if tree.motion_coordinate[e] >= 0:
+                k = tree.independent[tree.motion_coordinate[e]]
+                if k >= 0:
+                    for i in range(6):
+                        jacobian[b, i, k] += state.screw[e, i] * state.gain[e]
+    return jacobian
+
+
+@njit(cache=True)
+def point_jacobian(jacobian: Array, point: Array) -> Array:
+    """Return the Jacobian (3, n_q) of a body's point at `point` (3,), ground axes, m.
+
+    Parameters
+    ----------
+    jacobian : (6, n_q) array
+        The body's spatial Jacobian.
+    """
+    n_q = jacobian.shape[1]
+    out = np.empty((3, n_q))
+    x, y, z = point
+    for k in range(n_q):
+        wx, wy, wz = jacobian[0, k], jacobian[1, k], jacobian[2, k]
+        out[0, k] = jacobian[3, k] + wy * z - wz * y
+        out[1, k] = jacobian[4, k] + wz * x - wx * z
+        out[2, k] = jacobian[5, k] + wx * y - wy * x
+    return out
