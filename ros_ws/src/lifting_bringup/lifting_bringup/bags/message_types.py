@@ -1,0 +1,55 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Message types without ROS: the Jazzy standard types and lifting_interfaces' own .msg files."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+from rosbags.typesys.store import Typestore
+
+from lifting_bringup.bags.exceptions import MessageTypeError
+
+_PACKAGE = 'lifting_interfaces'
+
+
+def interface_folder() -> Path:
+    """Return the folder of lifting_interfaces' .msg files, installed or beside this package.
+
+    Raises
+    ------
+    MessageTypeError
+        Found in neither place.
+    """
+    beside = Path(__file__).resolve().parents[3] / _PACKAGE / 'msg'
+    if beside.is_dir():
+        return beside
+    try:
+        from ament_index_python.packages import (  # noqa: PLC0415 - optional without ROS
+            PackageNotFoundError,
+            get_package_share_directory,
+        )
+    except ModuleNotFoundError as error:
+        raise MessageTypeError(f'{_PACKAGE}: {beside} does not exist, no ament index') from error
+    try:
+        return Path(get_package_share_directory(_PACKAGE)) / 'msg'
+    except PackageNotFoundError as error:
+        raise MessageTypeError(f'{_PACKAGE} is not installed and not at {beside}') from error
+
+
+@cache
+def typestore() -> Typestore:
+    """Return a store with the Jazzy types and ours."""
+    store = get_typestore(Stores.ROS2_JAZZY)
+    types = {}
+    folder = interface_folder()
+    files = sorted(folder.glob('*.msg'))
+    if not files:
+        raise MessageTypeError(f'{folder} holds no .msg files')
+    for file in files:
+        text = file.read_text(encoding='utf-8')
+        types.update(get_types_from_msg(text, f'{_PACKAGE}/msg/{file.stem}'))
+    store.register(types)
+    return store
