@@ -1,0 +1,251 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Messages of the core types that all rooms share, and back; a room's own results have their own conversions."""
+
+from __future__ import annotations
+
+from array import array
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from human_model.motion import BodyMotion, Lift
+from human_model.report import SolveReport, SolveStatus
+from human_model.subject import Calibration, Subject
+from lifting_interfaces.msg import BodyMotion as BodyMotionMsg
+from lifting_interfaces.msg import MeasuredLift as MeasuredLiftMsg
+from lifting_interfaces.msg import SolveReport as SolveReportMsg
+from lifting_interfaces.msg import Subject as SubjectMsg
+
+from lifting_node.stamps import to_seconds, to_stamp
+
+Array = npt.NDArray[np.float64]
+
+#: Frame of all Cartesian values: x forward, y left, z up, on the floor.
+LABORATORY = 'lab'
+
+_SEX = {'male': SubjectMsg.SEX_MALE, 'female': SubjectMsg.SEX_FEMALE}
+_SEX_NAME = {code: name for name, code in _SEX.items()}
+
+
+@dataclass(frozen=True, eq=False)
+class MotionQuality:
+    """What the tracker says of each sample of a block, beside the motion itself.
+
+    Attributes
+    ----------
+    filter_delay : float
+        [s].
+    status : ndarray of int (n,)
+        SolveStatus per sample.
+    marker_rms, marker_max : ndarray (n,)
+        [m]; NaN where not tracked.
+    """
+
+    filter_delay: float
+    status: npt.NDArray[np.int64]
+    marker_rms: Array
+    marker_max: Array
+
+    @classmethod
+    def exact(cls, n: int) -> MotionQuality:
+        """Return the quality of a block that was computed, not tracked."""
+        nothing = np.full(n, np.nan)
+        return cls(0.0, np.zeros(n, np.int64), nothing, nothing)
+
+
+def flat(values: npt.ArrayLike) -> array[float]:
+    """Return values row-major in the form that rclpy takes without looking at each element."""
+    return array('d', np.ascontiguousarray(values, np.float64).tobytes())
+
+
+def report_to_msg(report: SolveReport) -> SolveReportMsg:
+    """Return the message of a solve report."""
+    return SolveReportMsg(
+        status=int(report.status),
+        message=report.message,
+        iterations=int(report.iterations),
+        objective=float(report.objective),
+        primal_residual=float(report.primal_residual),
+        dual_residual=float(report.dual_residual),
+        build_time=float(report.build_time),
+        solve_time=float(report.solve_time),
+    )
+
+
+def report_from_msg(message: SolveReportMsg) -> SolveReport:
+    """Return the solve report of a message; an unknown status raises ValueError."""
+    return SolveReport(
+        SolveStatus(message.status),
+        message.message,
+        message.iterations,
+        message.objective,
+        message.primal_residual,
+        message.dual_residual,
+        message.build_time,
+        message.solve_time,
+    )
+
+
+def subject_from_msg(message: SubjectMsg) -> Subject:
+    """Return the subject of a message.
+
+    Raises
+    ------
+    human_model.errors.SubjectError
+        If a value is out of range or arrays do not belong together.
+    """
+    calibration = None
+    if message.marker_names:
+        offsets = np.asarray(message.marker_offsets, np.float64)
+        names = tuple(message.marker_names)
+        shape = (len(names), 3) if offsets.size == 3 * len(names) else offsets.shape
+        calibration = Calibration(
+            names,
+            tuple(message.marker_segments),
+            offsets.reshape(shape),
+            dict(zip(message.segment_length_names, message.segment_lengths, strict=True)),
+            0.0 if np.isnan(message.calibration_rms) else message.calibration_rms,
+        )
+    return Subject(
+        pseudonym=message.pseudonym,
+        sex=_SEX_NAME.get(message.sex, f'code {message.sex}'),
+        mass=message.mass,
+        stature=message.stature,
+        age=message.age,
+        strength_z=message.strength_z,
+        lengths=dict(zip(message.segment_length_names, message.segment_lengths, strict=True)),
+        calibration=calibration,
+    )
+
+
+def subject_to_msg(subject: Subject, stamp: float, marker_set: str, source: str) -> SubjectMsg:
+    """Return the message of a subject, its calibration included."""
+    calibration = subject.calibration
+    lengths = {**(calibration.lengths if calibration else {}), **subject.lengths}
+    message = SubjectMsg(
+        pseudonym=subject.pseudonym,
+        sex=_SEX[subject.sex],
+        mass=subject.mass,
+        stature=subject.stature,
+        age=subject.age,
+        strength_z=subject.strength_z,
+        segment_length_names=list(lengths),
+        segment_lengths=list(lengths.values()),
+        marker_set=marker_set,
+        calibration_rms=float('nan'),
+        source=source,
+    )
+    message.header.stamp = to_stamp(stamp)
+    if calibration is not None:
+        message.marker_names = list(calibration.marker_names)
+        message.marker_segments = list(calibration.segments)
+        message.marker_offsets = flat(calibration.local_offsets)
+        message.calibration_rms = calibration.residual_rms
+    return message
+
+
+def motion_to_msg(motion: BodyMotion, quality: MotionQuality) -> BodyMotionMsg:
+    """Return the message of a block of body motion."""
+    message = BodyMotionMsg(
+        skeleton=motion.skeleton,
+        time_from_start=flat(motion.time - motion.time[0]),
+        coordinate_names=list(motion.coordinates),
+        position=flat(motion.position),
+        velocity=flat(motion.velocity),
+        acceleration=flat(motion.acceleration),
+        point_names=list(motion.point_names),
+        points=flat(motion.points),
+        frame_names=list(motion.frame_names),
+        frames=flat(motion.frames),
+        ground_force=flat(motion.ground_force),
+        centre_of_pressure=flat(motion.cop),
+        free_moment=flat(motion.free_moment),
+        hand_force=flat(motion.hand_force),
+        box_position=flat(motion.box_position),
+        filter_delay=float(quality.filter_delay),
+        status=array('H', np.asarray(quality.status, np.uint16).tobytes()),
+        marker_rms=flat(quality.marker_rms),
+        marker_max=flat(quality.marker_max),
+    )
+    message.header.stamp = to_stamp(float(motion.time[0]))
+    message.header.frame_id = LABORATORY
+    return message
+
+
+def motion_from_msg(message: BodyMotionMsg) -> BodyMotion:
+    """Return the block of body motion of a message.
+
+    Raises
+    ------
+    human_model.errors.MotionError
+        If arrays do not have the sizes that the names and the time call for, or are not finite.
+    """
+    time = to_seconds(message.header.stamp) + np.asarray(message.time_from_start)
+    n = time.size
+
+    def shaped(values: array[float], *tail: int) -> Array:
+        data = np.asarray(values, np.float64)
+        shape = (n, *tail)
+        return data.reshape(shape) if data.size == int(np.prod(shape)) else data
+
+    coordinates = tuple(message.coordinate_names)
+    points = tuple(message.point_names)
+    frames = tuple(message.frame_names)
+    return BodyMotion(
+        time=time,
+        skeleton=message.skeleton,
+        coordinates=coordinates,
+        position=shaped(message.position, len(coordinates)),
+        velocity=shaped(message.velocity, len(coordinates)),
+        acceleration=shaped(message.acceleration, len(coordinates)),
+        point_names=points,
+        points=shaped(message.points, len(points), 3),
+        frame_names=frames,
+        frames=shaped(message.frames, len(frames), 4),
+        ground_force=shaped(message.ground_force, 2, 3),
+        cop=shaped(message.centre_of_pressure, 2, 3),
+        free_moment=shaped(message.free_moment, 2, 3),
+        hand_force=shaped(message.hand_force, 2, 3),
+        box_position=shaped(message.box_position, 3),
+    )
+
+
+def quality_from_msg(message: BodyMotionMsg) -> MotionQuality:
+    """Return what the tracker said of each sample of a block."""
+    return MotionQuality(
+        message.filter_delay,
+        np.asarray(message.status, np.int64),
+        np.asarray(message.marker_rms, np.float64),
+        np.asarray(message.marker_max, np.float64),
+    )
+
+
+def lift_to_msg(lift: Lift, quality: MotionQuality, subject: Subject) -> MeasuredLiftMsg:
+    """Return the message of a measured lift."""
+    message = MeasuredLiftMsg(
+        lift_id=lift.lift_id,
+        subject=subject.pseudonym,
+        body_mass=subject.mass,
+        box_mass=lift.box_mass,
+        duration=lift.end - lift.start,
+        motion=motion_to_msg(lift.motion, quality),
+        report=report_to_msg(lift.report),
+    )
+    message.header.stamp = to_stamp(lift.start)
+    message.header.frame_id = LABORATORY
+    return message
+
+
+def lift_from_msg(message: MeasuredLiftMsg) -> Lift:
+    """Return the measured lift of a message."""
+    start = to_seconds(message.header.stamp)
+    return Lift(
+        lift_id=message.lift_id,
+        source='measured',
+        start=start,
+        end=start + message.duration,
+        box_mass=message.box_mass,
+        motion=motion_from_msg(message.motion),
+        report=report_from_msg(message.report),
+    )

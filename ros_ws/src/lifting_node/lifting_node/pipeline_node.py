@@ -1,0 +1,113 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""The lifecycle shell that every node of the graph puts round its pipeline."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from rclpy.lifecycle import (
+    LifecycleNode,
+    LifecyclePublisher,
+    LifecycleState,
+    TransitionCallbackReturn,
+)
+from rclpy.qos import QoSProfile
+from rclpy.subscription import Subscription
+
+from lifting_node.parameters import declare, load_table
+
+
+class PipelineNode(LifecycleNode):
+    """Managed node: parameters declared, inputs guarded and counted, health on /diagnostics.
+
+    A subclass sets `PACKAGE` (whose `data/parameters.yaml` it declares) and `INPUT_ERRORS` (exceptions of its core that
+    mean bad input: they are logged and counted, and the node goes on; any other exception is a defect and ends the
+    process), and implements `build`.
+    """
+
+    PACKAGE: ClassVar[str]
+    INPUT_ERRORS: ClassVar[tuple[type[Exception], ...]] = ()
+
+    def __init__(self) -> None:
+        super().__init__(self.PACKAGE)
+        self.values: dict[str, Any] = declare(self, load_table(self.PACKAGE))
+        self.counts: Counter[str] = Counter()
+        self.last_error = ''
+        self.active = False
+        self._inputs: list[Subscription] = []
+        self._outputs: list[LifecyclePublisher] = []
+        self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', 10)
+        self.create_timer(1.0, self._publish_health)
+
+    def build(self) -> None:
+        """Load the model, create the pipeline, publishers and subscriptions (the slow part)."""
+        raise NotImplementedError
+
+    def subscribe(
+        self, message_type: type, topic: str, callback: Callable[[Any], None], qos: QoSProfile
+    ) -> None:
+        """Subscribe with bad input reported and counted instead of ending the node."""
+
+        def guarded(message: Any) -> None:
+            self.counts[topic] += 1
+            try:
+                callback(message)
+            except self.INPUT_ERRORS as error:
+                self.report_error(f'{topic}: {error}')
+
+        self._inputs.append(self.create_subscription(message_type, topic, guarded, qos))
+
+    def advertise(self, message_type: type, topic: str, qos: QoSProfile) -> LifecyclePublisher:
+        """Create a publisher that is silent unless the node is active."""
+        publisher = self.create_lifecycle_publisher(message_type, topic, qos)
+        self._outputs.append(publisher)
+        return publisher
+
+    def report_error(self, text: str) -> None:
+        """Log an input error once per text in a row and count it for /diagnostics."""
+        self.counts['errors'] += 1
+        if text != self.last_error:
+            self.get_logger().error(text)
+        self.last_error = text
+
+    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Build the pipeline; a refused parameter or model file is a failure, not a crash."""
+        try:
+            self.build()
+        except (ValueError, OSError, *self.INPUT_ERRORS) as error:
+            self.get_logger().error(f'not configured: {error}')
+            return TransitionCallbackReturn.FAILURE
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Start publishing."""
+        self.active = True
+        return super().on_activate(state)
+
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Stop publishing; the pipeline keeps its state."""
+        self.active = False
+        return super().on_deactivate(state)
+
+    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Drop publishers and subscriptions of the pipeline."""
+        while self._inputs:
+            self.destroy_subscription(self._inputs.pop())
+        while self._outputs:
+            self.destroy_publisher(self._outputs.pop())
+        return TransitionCallbackReturn.SUCCESS
+
+    def _publish_health(self) -> None:
+        status = DiagnosticStatus(
+            level=DiagnosticStatus.WARN if self.counts['errors'] else DiagnosticStatus.OK,
+            name=self.get_fully_qualified_name(),
+            message=self.last_error or ('active' if self.active else 'not active'),
+            values=[KeyValue(key=key, value=str(n)) for key, n in sorted(self.counts.items())],
+        )
+        array = DiagnosticArray(status=[status])
+        array.header.stamp = self.get_clock().now().to_msg()
+        self._diagnostics.publish(array)

@@ -1,0 +1,43 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Quality of service of every topic of the graph, chosen in one place.
+
+The graph analyses recordings as well as live streams, and an analysis with a missing plate sample is wrong without
+looking wrong. So the input streams are reliable with a history deep enough for the slowest reader at ten times real
+time, not best effort.
+"""
+
+from __future__ import annotations
+
+from rclpy.qos import (
+    DurabilityPolicy,
+    HistoryPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+)
+
+#: Samples a force plate at 2500 Hz sends in 16 s: what a reader may fall behind before a sample is lost.
+PLATE_DEPTH = 40_000
+#: Frames of a 100 Hz stream in 60 s.
+FRAME_DEPTH = 6_000
+#: Lifts kept for a reader that joins late.
+LIFT_DEPTH = 100
+
+
+def _profile(depth: int, durability: DurabilityPolicy) -> QoSProfile:
+    return QoSProfile(
+        reliability=ReliabilityPolicy.RELIABLE,
+        durability=durability,
+        history=HistoryPolicy.KEEP_LAST,
+        depth=depth,
+    )
+
+
+#: Force plate samples.
+PLATES = _profile(PLATE_DEPTH, DurabilityPolicy.VOLATILE)
+#: One message a camera frame: markers, box, joint states, live loads.
+FRAMES = _profile(FRAME_DEPTH, DurabilityPolicy.VOLATILE)
+#: Subject and task: entered once, known to every node that joins later.
+LATCHED = _profile(1, DurabilityPolicy.TRANSIENT_LOCAL)
+#: Results of whole lifts and alarms: a reader that joins late gets the recent ones.
+RESULTS = _profile(LIFT_DEPTH, DurabilityPolicy.TRANSIENT_LOCAL)

@@ -1,0 +1,20 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Message stamps and seconds."""
+
+from __future__ import annotations
+
+from builtin_interfaces.msg import Time
+
+NANOSECONDS = 1_000_000_000
+
+
+def to_seconds(stamp: Time) -> float:
+    """Return a stamp as seconds [s]; exact to 0.24 microseconds for stamps of this century."""
+    return float(stamp.sec) + float(stamp.nanosec) / NANOSECONDS
+
+
+def to_stamp(seconds: float) -> Time:
+    """Return seconds [s] as a stamp, rounded to the microsecond (a double holds no more of an epoch time)."""
+    microseconds = round(seconds * 1_000_000)
+    return Time(sec=microseconds // 1_000_000, nanosec=microseconds % 1_000_000 * 1000)
