@@ -1,0 +1,245 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Static optimisation: which muscle forces balance the joint torques (equation 4.10).
+
+The sum of squared activations is minimised; reserve actuators make the balance possible in
+every frame, are paid for in the same cost as OpenSim does, and name the coordinate when
+muscles are too weak.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+from human_model.report import SolveReport, SolveStatus
+from numpy.typing import NDArray
+
+from muscle_analyzer.core.dual_newton import solve_dual
+from muscle_analyzer.core.exceptions import InputArrayError, OptionError
+
+Array = NDArray[np.float64]
+
+#: Smallest activation OpenSim 4.6 allows a muscle in static optimisation (``min_control`` of
+#: the muscles of the lifting full-body model).
+MINIMUM_ACTIVATION = 0.01
+#: Torque of the reserve at unit control [N m]: small where a muscle crosses the coordinate,
+#: large where none does (README of the OpenSim 4.6 reference of the squats).
+RESERVE_WITH_MUSCLE, RESERVE_WITHOUT_MUSCLE = 1.0, 100.0
+#: A coordinate is not balanced by its muscles when the reserve takes more than this share of
+#: the torque (Hicks et al. 2015, J Biomech Eng 137:020905: 5 % of the net joint moment) ...
+RESERVE_SHARE = 0.05
+#: ... and more than its unit torque, below which the share means nothing.
+RESERVE_CONTROL = 1.0
+
+
+@dataclass(frozen=True)
+class StaticOptimizationOptions:
+    """
+    Settings of the static optimisation.
+
+    Attributes
+    ----------
+    minimum_activation, maximum_activation
+        Bounds of every activation.
+    reserve_with_muscle, reserve_without_muscle
+        Reserve torque at unit control of a coordinate that muscles cross or do not [N m].
+    tolerance
+        Largest balance residual of a solution, relative to the largest torque (or 1 N m).
+    max_iterations
+        Limit of Newton steps.
+    """
+
+    minimum_activation: float = MINIMUM_ACTIVATION
+    maximum_activation: float = 1.0
+    reserve_with_muscle: float = RESERVE_WITH_MUSCLE
+    reserve_without_muscle: float = RESERVE_WITHOUT_MUSCLE
+    tolerance: float = 1e-10
+    max_iterations: int = 100
+
+
+@dataclass(frozen=True)
+class MuscleBalance:
+    """
+    Solution of one frame.
+
+    Attributes
+    ----------
+    activation : (n_m,)
+    reserve : (n_c,)
+        Torque the reserves take [N m].
+    multiplier : (n_c,)
+        Dual solution, the warm start of the next frame [1 / (N m)].
+    at_lower, at_upper : (n_m,) bool
+        Active sets.
+    crossed : (n_c,) bool
+        Coordinates that a muscle crosses.
+    unbalanced : tuple of str
+        Coordinates whose muscles are too weak.
+    report : SolveReport
+        Primal residual [N m], dual residual (KKT stationarity, dimensionless).
+    """
+
+    activation: Array
+    reserve: Array
+    multiplier: Array
+    at_lower: NDArray[np.bool_]
+    at_upper: NDArray[np.bool_]
+    crossed: NDArray[np.bool_]
+    unbalanced: tuple[str, ...]
+    report: SolveReport
+
+
+class StaticOptimization:
+    """
+    Solver of one model, warm-started from frame to frame.
+
+    Parameters
+    ----------
+    muscle_names, coordinate_names
+        Names of the columns and rows of the torque matrix.
+    options
+        Settings.
+    """
+
+    def __init__(
+        self,
+        muscle_names: tuple[str, ...],
+        coordinate_names: tuple[str, ...],
+        options: StaticOptimizationOptions | None = None,
+    ) -> None:
+        self.options = options or StaticOptimizationOptions()
+        self.muscle_names = muscle_names
+        self.coordinate_names = coordinate_names
+        low, high = self.options.minimum_activation, self.options.maximum_activation
+        if not 0.0 <= low < high:
+            raise OptionError(
+                f'minimum_activation {low} must be in [0, maximum_activation {high})'
+            )
+        for name in ('reserve_with_muscle', 'reserve_without_muscle'):
+            if not getattr(self.options, name) > 0.0:
+                raise OptionError(
+                    f'{name} {getattr(self.options, name)} must be positive: '
+                    'without reserve a weak muscle leaves no solution'
+                )
+        self._lower = np.full(len(muscle_names), low)
+        self._upper = np.full(len(muscle_names), high)
+        self._multiplier = np.zeros(len(coordinate_names))
+
+    def reset(self) -> None:
+        """Forget the previous frame."""
+        self._multiplier = np.zeros(len(self.coordinate_names))
+
+    def solve(self, matrix: Array, torque: Array) -> MuscleBalance:
+        """
+        Share the torques of one frame among the muscles.
+
+        Parameters
+        ----------
+        matrix : (n_c, n_m)
+            Torque of each muscle at full activation about each coordinate [N m].
+        torque : (n_c,)
+            Torque to balance [N m].
+
+        Raises
+        ------
+        InputArrayError
+            If a shape is wrong or a number is not finite, naming the first such coordinate.
+        """
+        began = time.perf_counter()
+        matrix, torque = self._checked(matrix, torque)
+        crossed: NDArray[np.bool_] = (matrix != 0.0).any(axis=1)
+        unit = np.where(
+            crossed, self.options.reserve_with_muscle, self.options.reserve_without_muscle
+        )
+        tolerance = self.options.tolerance * max(1.0, float(np.abs(torque).max(initial=0.0)))
+        multiplier = self._multiplier.copy()
+        limit = self.options.max_iterations
+        built = time.perf_counter()
+        activation, residual, iterations, converged = solve_dual(
+            matrix, unit, torque, self._lower, self._upper, multiplier, tolerance, limit
+        )
+        if not converged:
+            # A start far from this frame's solution: once more from nothing.
+            multiplier[:] = 0.0
+            activation, residual, more, converged = solve_dual(
+                matrix, unit, torque, self._lower, self._upper, multiplier, tolerance, limit
+            )
+            iterations += more
+        self._multiplier = multiplier if converged else np.zeros_like(multiplier)
+        solved = time.perf_counter()
+
+        control = 0.5 * unit * multiplier
+        gradient = 2.0 * activation - matrix.T @ multiplier
+        projected = np.clip(activation - gradient, self._lower, self._upper)
+        reserve = unit * control
+        weak = crossed & (np.abs(reserve) > RESERVE_SHARE * np.abs(torque))
+        weak &= np.abs(control) > RESERVE_CONTROL
+        unbalanced = tuple(np.array(self.coordinate_names)[weak].tolist())
+        at_upper = activation >= self._upper
+        status, message = self._verdict(converged, residual, reserve, weak, at_upper)
+        report = SolveReport(
+            status=status,
+            message=message,
+            iterations=int(iterations),
+            objective=float(activation @ activation + control @ control),
+            primal_residual=float(np.abs(residual).max(initial=0.0)),
+            dual_residual=float(np.abs(projected - activation).max(initial=0.0)),
+            build_time=built - began,
+            solve_time=solved - built,
+        )
+        return MuscleBalance(
+            activation=activation,
+            reserve=reserve,
+            multiplier=multiplier,
+            at_lower=activation <= self._lower,
+            at_upper=at_upper,
+            crossed=crossed,
+            unbalanced=unbalanced,
+            report=report,
+        )
+
+    def _checked(self, matrix: Array, torque: Array) -> tuple[Array, Array]:
+        """Give the input as contiguous arrays of the right shape and finite numbers."""
+        matrix = np.ascontiguousarray(matrix, dtype=np.float64)
+        torque = np.ascontiguousarray(torque, dtype=np.float64)
+        shape = (len(self.coordinate_names), len(self.muscle_names))
+        if matrix.shape != shape or torque.shape != shape[:1]:
+            raise InputArrayError(
+                f'matrix {matrix.shape} and torque {torque.shape}: expected {shape} and '
+                f'{shape[:1]}'
+            )
+        bad = ~(np.isfinite(torque) & np.isfinite(matrix).all(axis=1))
+        if bad.any():
+            j = int(bad.argmax())
+            raise InputArrayError(
+                f'coordinate {self.coordinate_names[j]}: torque {torque[j]} or moment arms '
+                'are not finite'
+            )
+        return matrix, torque
+
+    def _verdict(
+        self,
+        converged: bool,
+        residual: Array,
+        reserve: Array,
+        weak: NDArray[np.bool_],
+        at_upper: NDArray[np.bool_],
+    ) -> tuple[SolveStatus, str]:
+        """Say what happened, naming coordinates and muscles."""
+        if not converged:
+            j = int(np.abs(residual).argmax())
+            return SolveStatus.MUSCLE_NOT_CONVERGED, (
+                f'static optimisation not converged: {self.coordinate_names[j]} is off by '
+                f'{residual[j]:.3g} N m'
+            )
+        full = [self.muscle_names[i] for i in np.flatnonzero(at_upper)]
+        bound = f'at full activation: {", ".join(full)}' if full else ''
+        if weak.any():
+            parts = [f'{self.coordinate_names[j]} by {reserve[j]:.1f} N m'
+                     for j in np.flatnonzero(weak)]
+            text = f'muscles too weak, reserves help {", ".join(parts)}'
+            return SolveStatus.MUSCLE_TOO_WEAK, f'{text}; {bound}' if bound else text
+        return SolveStatus.OK, bound
