@@ -1,0 +1,220 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""What one lift means: peaks against limits, measured against predicted (thesis section 4.2)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from injury_monitor.core.activation_index import (
+    DEFAULT_WINDOW,
+    ActivationIndex,
+    activation_index,
+)
+from injury_monitor.core.exceptions import InvalidInputError
+from injury_monitor.core.limits import Limit, LimitSet, Zone, zone_meaning
+from injury_monitor.core.loads import LiftLoads
+from injury_monitor.core.rnle_assessment import LiftEnds, LiftingAssessment, assess_lifting
+from injury_monitor.core.torque_index import TorqueIndexPeaks, torque_index_peaks
+from injury_monitor.core.work import Work
+
+
+@dataclass(frozen=True)
+class Criterion:
+    """One value of one lift against one limit.
+
+    Attributes
+    ----------
+    criterion : str
+        Name of the limit, for example ``compression_action``.
+    source : str
+        ``measured`` or ``predicted``.
+    value, limit, margin : float
+        Peak, limit, and limit minus peak, in ``unit``; NaN where nothing was solved.
+    unit, limit_source : str
+    time : float
+        Of the peak, since the start of the lift [s].
+    per_kilogram : float
+        Value per kilogram body mass [N/kg]; NaN for an index.
+    detail : str
+        Joint or muscle of an index.
+    """
+
+    criterion: str
+    source: str
+    value: float
+    limit: float
+    margin: float
+    unit: str
+    limit_source: str
+    time: float
+    per_kilogram: float
+    detail: str = ''
+
+
+@dataclass(frozen=True)
+class RiskAssessment:
+    """Assessment of one lift.
+
+    Attributes
+    ----------
+    lift_id : str
+    work : Work
+    limits : LimitSet
+        In force, with their sources.
+    criteria : tuple of Criterion
+        Compression (two limits), shear, torque and activation index; measured, then predicted.
+    unnecessary_compression, unnecessary_shear : float
+        Measured peak minus predicted peak [N]: the part of the load that the optimal lift does
+        without; NaN without a predicted lift.
+    torque_index : dict
+        ``measured`` and ``predicted`` to the peaks of every joint, where there are torques.
+    activation_index : dict
+        The same for the muscles.
+    lifting : LiftingAssessment
+        Revised NIOSH lifting equation.
+    zone : Zone
+        NIOSH 1981 zone of the measured peak compression.
+    summary : str
+        In words.
+    samples_left_out : int
+        Samples of all series whose solve report is not good.
+    notes : tuple of str
+        What could not be assessed, and why.
+    """
+
+    lift_id: str
+    work: Work
+    limits: LimitSet
+    criteria: tuple[Criterion, ...]
+    unnecessary_compression: float
+    unnecessary_shear: float
+    torque_index: dict[str, TorqueIndexPeaks]
+    activation_index: dict[str, ActivationIndex]
+    lifting: LiftingAssessment
+    zone: Zone
+    summary: str
+    samples_left_out: int
+    notes: tuple[str, ...]
+
+    def criterion(self, name: str, source: str) -> Criterion | None:
+        """Return one criterion by limit name and source, or None."""
+        for entry in self.criteria:
+            if entry.criterion == name and entry.source == source:
+                return entry
+        return None
+
+
+def assess_lift(work: Work, limits: LimitSet, measured: LiftLoads,
+                predicted: LiftLoads | None = None, ends: LiftEnds | None = None,
+                window: float = DEFAULT_WINDOW) -> RiskAssessment:
+    """Assess one lift.
+
+    Parameters
+    ----------
+    work : Work
+    limits : LimitSet
+    measured, predicted : LiftLoads
+        Results of the recorded and of the optimal lift; the latter may be missing.
+    ends : LiftEnds, optional
+        Places of hands and ankles at origin and destination for the lifting equation.
+    window : float
+        Of the activation index [s].
+
+    Raises
+    ------
+    InvalidInputError
+        If the two lifts do not belong together.
+    """
+    if predicted is not None and predicted.lift_id != measured.lift_id:
+        raise InvalidInputError('predicted.lift_id', predicted.lift_id,
+                                f'must be that of the measured lift, {measured.lift_id!r}')
+    criteria: list[Criterion] = []
+    torques: dict[str, TorqueIndexPeaks] = {}
+    activations: dict[str, ActivationIndex] = {}
+    notes: list[str] = []
+    if predicted is None:
+        notes.append('no predicted lift: the unnecessary part of the load is not known')
+    lifts = {'measured': measured} if predicted is None else {
+        'measured': measured, 'predicted': predicted}
+    for source, lift in lifts.items():
+        criteria += _spine(work, limits, source, lift, notes)
+        if lift.torques is None:
+            notes.append(f'{source}: no joint torques')
+        else:
+            series = lift.torques
+            torques[source] = torque_index_peaks(series.time, series.joints, series.torque,
+                                                 series.lower, series.upper, series.solved)
+            joint, value, time = torques[source].worst()
+            criteria.append(_criterion(limits.torque_index, source, value,
+                                       time - lift.start, joint))
+        if lift.activations is None:
+            notes.append(f'{source}: no muscle activations')
+        else:
+            held = lift.activations
+            activations[source] = activation_index(held.time, held.muscles, held.activation,
+                                                   held.solved, window)
+            muscle, value, time = activations[source].worst()
+            criteria.append(_criterion(limits.activation_index, source, value,
+                                       time - lift.start, muscle))
+    if not limits.shear_within_source:
+        notes.append(f'{limits.loads_per_day:g} loads a day are more than the shear limit was '
+                     f'published for ({limits.shear.loads_up_to:g})')
+    peaks = {entry.source: entry for entry in criteria if entry.criterion == 'compression_action'}
+    shears = {entry.source: entry for entry in criteria if entry.criterion == limits.shear.name}
+    zone = limits.zone(peaks['measured'].value)
+    more_compression = _difference(peaks)
+    lifting = assess_lifting(work, ends)
+    return RiskAssessment(
+        measured.lift_id, work, limits, tuple(criteria), more_compression, _difference(shears),
+        torques, activations, lifting, zone,
+        _summary(peaks['measured'], zone, more_compression, lifting),
+        sum(lift.left_out() for lift in lifts.values()), tuple(notes))
+
+
+def _spine(work: Work, limits: LimitSet, source: str, lift: LiftLoads,
+           notes: list[str]) -> list[Criterion]:
+    values = {}
+    for name, series in (('compression', lift.compression), ('shear', lift.anterior_shear)):
+        if not np.any(lift.solved):
+            values[name] = (math.nan, math.nan)
+            continue
+        k = int(np.argmax(np.where(lift.solved, series, -np.inf)))
+        values[name] = (float(series[k]), float(lift.time[k]) - lift.start)
+    if not np.any(lift.solved):
+        notes.append(f'{source}: no sample of the spine load was solved')
+    pairs = ((limits.compression_action, 'compression'),
+             (limits.compression_maximum, 'compression'), (limits.shear, 'shear'))
+    return [_criterion(limit, source, *values[name], per_kilogram=values[name][0]
+                       / work.body_mass) for limit, name in pairs]
+
+
+def _criterion(limit: Limit, source: str, value: float, time: float, detail: str = '',
+               per_kilogram: float = math.nan) -> Criterion:
+    return Criterion(limit.name, source, value, limit.value, limit.margin(value), limit.unit,
+                     limit.source, time, per_kilogram, detail)
+
+
+def _difference(peaks: dict[str, Criterion]) -> float:
+    if 'predicted' not in peaks:
+        return math.nan
+    return peaks['measured'].value - peaks['predicted'].value
+
+
+def _summary(peak: Criterion, zone: Zone, unnecessary: float,
+             lifting: LiftingAssessment) -> str:
+    if zone is Zone.UNKNOWN:
+        text = 'L5-S1 compression ' + zone_meaning(zone)
+    else:
+        text = (f'Peak L5-S1 compression {peak.value:.0f} N ({peak.per_kilogram:.1f} N/kg), '
+                f'{zone_meaning(zone)}')
+    if unnecessary > 0.0:
+        text += f'; {unnecessary:.0f} N of it were not necessary'
+    elif not math.isnan(unnecessary):
+        text += f'; the optimal lift would have a peak {-unnecessary:.0f} N higher'
+    if not math.isnan(lifting.lifting_index):
+        text += f'; lifting index {lifting.lifting_index:.2f} ({lifting.band})'
+    return text + '.'

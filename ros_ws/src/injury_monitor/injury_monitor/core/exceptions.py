@@ -1,0 +1,69 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Exceptions of the injury monitor; each names the field and the value that was refused."""
+
+from __future__ import annotations
+
+
+class InjuryMonitorError(Exception):
+    """Base of every exception of this package."""
+
+
+class InvalidInputError(InjuryMonitorError, ValueError):
+    """A value from outside cannot be used.
+
+    Parameters
+    ----------
+    field : str
+        Name of the field.
+    value : object
+        What was given.
+    reason : str
+        What the field must be.
+    """
+
+    def __init__(self, field: str, value: object, reason: str) -> None:
+        super().__init__(f'{field} = {value!r}: {reason}')
+        self.field = field
+        self.value = value
+
+
+class DataFileError(InjuryMonitorError):
+    """A data file of the package is damaged.
+
+    Parameters
+    ----------
+    file : str
+        File name.
+    field : str
+        Row and column concerned.
+    value : object
+        What stands there.
+    reason : str
+        What must stand there.
+    """
+
+    def __init__(self, file: str, field: str, value: object, reason: str) -> None:
+        super().__init__(f'{file}: {field} = {value!r}: {reason}')
+        self.file = file
+        self.field = field
+
+
+class UnknownAlarmError(InjuryMonitorError, KeyError):
+    """An operator named an alarm this station does not have."""
+
+    def __str__(self) -> str:
+        """Return the message without the quotes that KeyError puts round it."""
+        return str(self.args[0])
+
+
+class AlarmCommandError(InjuryMonitorError):
+    """An operator's command does not apply to the state the alarm is in."""
+
+
+class ShelveDurationError(InvalidInputError):
+    """A shelving time is not positive or is longer than allowed."""
+
+
+class JournalError(InjuryMonitorError):
+    """The alarm journal cannot be read or written."""

@@ -1,0 +1,133 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Results of one lift that the monitor assesses: spine load, joint torques, activations."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from injury_monitor.core.exceptions import InvalidInputError
+from injury_monitor.core.validation import BoolArray, FloatArray, array
+
+
+def _series(owner: object, time: FloatArray, solved: BoolArray) -> None:
+    """Check the clock and the solve flags that every series has."""
+    n = np.asarray(time).size
+    if n == 0:
+        raise InvalidInputError(f'{type(owner).__name__}.time', [], 'must not be empty')
+    stamps = array(f'{type(owner).__name__}.time', time, (n,))
+    if not np.all(np.isfinite(stamps)) or np.any(np.diff(stamps) <= 0.0):
+        raise InvalidInputError(f'{type(owner).__name__}.time', stamps.tolist()[:5],
+                                'must be finite and increase')
+    array(f'{type(owner).__name__}.solved', solved, (n,))
+    object.__setattr__(owner, 'time', stamps)
+    object.__setattr__(owner, 'solved', np.asarray(solved, dtype=bool))
+
+
+def _column(owner: object, field: str, shape: tuple[int, ...], solved: BoolArray) -> None:
+    """Check the shape of a field and that solved rows are finite."""
+    name = f'{type(owner).__name__}.{field}'
+    values = array(name, getattr(owner, field), shape)
+    good = values[np.asarray(solved, dtype=bool)]
+    if not np.all(np.isfinite(good)):
+        raise InvalidInputError(name, 'NaN', 'must be finite in every solved sample')
+    object.__setattr__(owner, field, values)
+
+
+@dataclass(frozen=True)
+class TorqueSeries:
+    """Joint torques with their dynamic limits over a lift.
+
+    Attributes
+    ----------
+    time : array (n,)
+        [s].
+    joints : tuple of n_j names
+    torque, lower, upper : arrays (n, n_j)
+        [N m].
+    solved : array of bool (n,)
+    """
+
+    time: FloatArray
+    joints: tuple[str, ...]
+    torque: FloatArray
+    lower: FloatArray
+    upper: FloatArray
+    solved: BoolArray
+
+    def __post_init__(self) -> None:
+        """Refuse wrong shapes and NaN in solved samples."""
+        _series(self, self.time, self.solved)
+        for field in ('torque', 'lower', 'upper'):
+            _column(self, field, (len(self.time), len(self.joints)), self.solved)
+
+
+@dataclass(frozen=True)
+class ActivationSeries:
+    """Muscle activations over a lift.
+
+    Attributes
+    ----------
+    time : array (n,)
+        [s].
+    muscles : tuple of n_m names
+    activation : array (n, n_m)
+        [0..1].
+    solved : array of bool (n,)
+    """
+
+    time: FloatArray
+    muscles: tuple[str, ...]
+    activation: FloatArray
+    solved: BoolArray
+
+    def __post_init__(self) -> None:
+        """Refuse wrong shapes and NaN in solved samples."""
+        _series(self, self.time, self.solved)
+        _column(self, 'activation', (len(self.time), len(self.muscles)), self.solved)
+
+
+@dataclass(frozen=True)
+class LiftLoads:
+    """Loads of one lift, recorded or predicted.
+
+    Attributes
+    ----------
+    lift_id : str
+    start : float
+        Start of the lift on the clock of the series [s].
+    time : array (n,)
+        Of the spine load [s].
+    compression, anterior_shear : arrays (n,)
+        L5-S1 [N], positive as in the interface package.
+    solved : array of bool (n,)
+        Samples of the spine load whose solve report is good.
+    torques : TorqueSeries, optional
+    activations : ActivationSeries, optional
+    """
+
+    lift_id: str
+    start: float
+    time: FloatArray
+    compression: FloatArray
+    anterior_shear: FloatArray
+    solved: BoolArray
+    torques: TorqueSeries | None = None
+    activations: ActivationSeries | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse wrong shapes and NaN in solved samples."""
+        _series(self, self.time, self.solved)
+        for field in ('compression', 'anterior_shear'):
+            _column(self, field, (len(self.time),), self.solved)
+
+    def left_out(self) -> int:
+        """Return how many samples of all series are not solved."""
+        series = [self.solved]
+        if self.torques is not None:
+            series.append(self.torques.solved)
+        if self.activations is not None:
+            series.append(self.activations.solved)
+        return int(sum(np.count_nonzero(~flags) for flags in series))

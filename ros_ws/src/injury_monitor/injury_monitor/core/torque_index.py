@@ -1,0 +1,108 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Joint torque injury index (thesis eq. 4.12)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from injury_monitor.core.exceptions import InvalidInputError
+from injury_monitor.core.validation import BoolArray, FloatArray, array
+
+
+def torque_index(torque: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatArray:
+    """Ratio of joint torque and dynamic joint strength, thesis eq. 4.12.
+
+    The strength is the upper bound where the torque is positive and the lower bound where it is
+    negative, so the index is never negative; 1 means that the whole strength is used.
+
+    Parameters
+    ----------
+    torque : array, any shape
+        Joint torque [N m].
+    lower, upper : arrays of the same shape
+        Dynamic joint strength in the negative (lower <= 0) and positive (upper >= 0) direction
+        [N m].
+
+    Returns
+    -------
+    array
+        The index; infinite where a torque meets no strength at all.
+
+    Raises
+    ------
+    InvalidInputError
+        If the shapes differ, a lower bound is positive or an upper bound negative, or a value is
+        not finite.
+    """
+    tau = np.asarray(torque, dtype=np.float64)
+    low = array('lower', lower, tau.shape)
+    high = array('upper', upper, tau.shape)
+    for field, values in (('torque', tau), ('lower', low), ('upper', high)):
+        if not np.all(np.isfinite(values)):
+            raise InvalidInputError(field, values[~np.isfinite(values)][0], 'must be finite')
+    if np.any(low > 0.0):
+        raise InvalidInputError('lower', float(low.max()), 'must not be positive')
+    if np.any(high < 0.0):
+        raise InvalidInputError('upper', float(high.min()), 'must not be negative')
+    strength = np.where(tau > 0.0, high, low)
+    index = np.full(tau.shape, np.inf)
+    np.divide(tau, strength, out=index, where=strength != 0.0)
+    index[tau == 0.0] = 0.0
+    return index
+
+
+@dataclass(frozen=True)
+class TorqueIndexPeaks:
+    """Largest torque index of every joint over a lift.
+
+    Attributes
+    ----------
+    joints : tuple of str
+    peak : array (n_joints,)
+        NaN where no sample was solved.
+    time : array (n_joints,)
+        Time of the peak [s], on the clock of the samples; NaN where there is no peak.
+    """
+
+    joints: tuple[str, ...]
+    peak: FloatArray
+    time: FloatArray
+
+    def worst(self) -> tuple[str, float, float]:
+        """Return joint, index and time of the largest peak; ('', NaN, NaN) if there is none."""
+        if not self.joints or np.all(np.isnan(self.peak)):
+            return '', float('nan'), float('nan')
+        k = int(np.nanargmax(self.peak))
+        return self.joints[k], float(self.peak[k]), float(self.time[k])
+
+
+def torque_index_peaks(time: FloatArray, joints: Sequence[str], torque: FloatArray,
+                       lower: FloatArray, upper: FloatArray,
+                       solved: BoolArray) -> TorqueIndexPeaks:
+    """Find the largest torque index of every joint.
+
+    Parameters
+    ----------
+    time : array (n,)
+        [s].
+    joints : sequence of n_j names
+    torque, lower, upper : arrays (n, n_j)
+        [N m]; rows that are not solved may hold anything.
+    solved : array of bool (n,)
+        Samples whose solve report is good; the others are left out.
+    """
+    shape = (len(time), len(joints))
+    tau = array('torque', torque, shape)
+    low = array('lower', lower, shape)
+    high = array('upper', upper, shape)
+    nothing = np.full(len(joints), np.nan)
+    if not np.any(solved):
+        return TorqueIndexPeaks(tuple(joints), nothing, nothing.copy())
+    index = torque_index(tau[solved], low[solved], high[solved])
+    rows = np.argmax(index, axis=0)
+    peak = index[rows, np.arange(len(joints))]
+    return TorqueIndexPeaks(tuple(joints), peak, np.asarray(time)[solved][rows])
