@@ -177,30 +177,23 @@ def compile_model(model: OsimModel) -> MultibodyModel:
         gravity=model.gravity.copy(),
         n_independent=np.array([1 + max(independent, default=-1)], dtype=np.int64),
     )
-    free = {
-        c.name: c for joint in model.joints for c in joint.coordinates
-    }  # range and default of the independent ones
-    free_names = tuple(_owners(names, independent, coupling))
+    by_name = {c.name: c for joint in model.joints for c in joint.coordinates}
+    free = [
+        by_name[name]
+        for name, q, function in zip(names, independent, coupling, strict=True)
+        if q >= 0 and function == 0
+    ]
     return MultibodyModel(
         source=model,
         body_names=body_names,
         joint_names=('', *(joint.name for joint in joints)),
-        coordinate_names=free_names,
+        coordinate_names=tuple(c.name for c in free),
         tree_coordinate_names=tuple(names),
-        lower=np.array([free[name].range[0] for name in free_names]),
-        upper=np.array([free[name].range[1] for name in free_names]),
-        default=np.array([free[name].default_value for name in free_names]),
+        lower=np.array([c.range[0] for c in free]),
+        upper=np.array([c.range[1] for c in free]),
+        default=np.array([c.default_value for c in free]),
         tree=tree,
     )
-
-
-def _owners(names: list[str], independent: list[int], coupling: list[int]) -> list[str]:
-    """Return the names of the independent coordinates (those that are themselves, function 0)."""
-    return [
-        name
-        for name, q, function in zip(names, independent, coupling, strict=True)
-        if q >= 0 and function == 0
-    ]
 
 
 def _ordered_joints(model: OsimModel) -> list[Joint]:

@@ -1,0 +1,137 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Inverse dynamics of the whole tree by the recursive Newton-Euler method; compiled.
+
+The thesis' equations 2.5 to 2.9 in wrench form. All wrenches are (moment, force) about the ground's
+origin in ground axes, so the backward recursion is a plain sum over the subtree.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from muscle_analyzer.core.kinematics import BodyState
+from muscle_analyzer.core.multibody import Tree
+
+Array = NDArray[np.float64]
+
+
+class InverseDynamics(NamedTuple):
+    """What the motion and the external loads ask of the joints.
+
+    Attributes
+    ----------
+    joint_wrench : (n_b, 6) array
+        Wrench that must act on each body from its parent, by joint and muscles together. Of the
+        root body it is what the external loads do not explain: the residual.
+    tree_force : (n_x,) array
+        Generalised force of every coordinate of the tree, as if none were coupled, N m or N.
+    force : (n_q,) array
+        Generalised force of the independent coordinates, coupled ones included, N m or N.
+    """
+
+    joint_wrench: Array
+    tree_force: Array
+    force: Array
+
+
+@njit(cache=True)
+def add_force(wrenches: Array, body: int, force: Array, point: Array, moment: Array) -> None:
+    """Add a force (3,) N at a ground point (3,) m and a free moment (3,) N m to a body's wrench.
+
+    Parameters
+    ----------
+    wrenches : (n_b, 6) array
+        Changed in place.
+    """
+    px, py, pz = point
+    fx, fy, fz = force
+    wrenches[body, 0] += py * fz - pz * fy + moment[0]
+    wrenches[body, 1] += pz * fx - px * fz + moment[1]
+    wrenches[body, 2] += px * fy - py * fx + moment[2]
+    wrenches[body, 3] += fx
+    wrenches[body, 4] += fy
+    wrenches[body, 5] += fz
+
+
+@njit(cache=True)
+def inertial_wrenches(tree: Tree, state: BodyState) -> Array:
+    """Return the wrenches (n_b, 6) that give every body its acceleration, weight taken off."""
+    n_b = tree.parent.size
+    out = np.zeros((n_b, 6))
+    arm = np.zeros(3)
+    turned = np.zeros((3, 3))
+    inertia = np.zeros((3, 3))
+    for b in range(1, n_b):
+        rot = state.rotation[b]
+        w = state.angular_velocity[b]
+        al = state.angular_acceleration[b]
+        for i in range(3):
+            arm[i] = 0.0
+            for j in range(3):
+                arm[i] += rot[i, j] * tree.mass_center[b, j]
+                turned[i, j] = 0.0
+                for k in range(3):
+                    turned[i, j] += rot[i, k] * tree.inertia[b, k, j]
+        for i in range(3):
+            for j in range(3):
+                inertia[i, j] = 0.0
+                for k in range(3):
+                    inertia[i, j] += turned[i, k] * rot[j, k]
+        spin = inertia @ w
+        rate = inertia @ al
+        swing = np.cross(w, np.cross(w, arm)) + np.cross(al, arm)
+        force = tree.mass[b] * (state.acceleration[b] + swing - tree.gravity)
+        add_force(out, b, force, state.position[b] + arm, rate + np.cross(w, spin))
+    return out
+
+
+@njit(cache=True)
+def subtree_sum(tree: Tree, wrenches: Array) -> Array:
+    """Return for every body the sum (n_b, 6) of the wrenches of it and all that it carries."""
+    total = wrenches.copy()
+    for b in range(tree.parent.size - 1, 0, -1):
+        for i in range(6):
+            total[tree.parent[b], i] += total[b, i]
+    return total
+
+
+@njit(cache=True)
+def inverse_dynamics(tree: Tree, state: BodyState, external: Array) -> InverseDynamics:
+    """Return the joint wrenches and generalised forces of a motion under external loads.
+
+    Parameters
+    ----------
+    tree : Tree
+    state : BodyState
+        Of the same tree.
+    external : (n_b, 6) array
+        Wrenches on the bodies from outside (ground, box), without weight; see `add_force`.
+    """
+    joint_wrench = subtree_sum(tree, inertial_wrenches(tree, state) - external)
+    tree_force = np.zeros(tree.independent.size)
+    force = np.zeros(tree.n_independent[0])
+    for b in range(1, tree.parent.size):
+        for e in range(tree.first_motion[b], tree.first_motion[b + 1]):
+            x = tree.motion_coordinate[e]
+            if x < 0:
+                continue
+            along = 0.0
+            for i in range(6):
+                along += state.screw[e, i] * joint_wrench[b, i]
+            tree_force[x] += along * state.tree_gain[e]
+            if tree.independent[x] >= 0:
+                force[tree.independent[x]] += along * state.gain[e]
+    return InverseDynamics(joint_wrench, tree_force, force)
+
+
+@njit(cache=True)
+def wrench_at(wrench: Array, point: Array) -> Array:
+    """Return a wrench (6,) about the ground's origin as one about another point (3,), m."""
+    out = wrench.copy()
+    out[:3] -= np.cross(point, wrench[3:])
+    return out
