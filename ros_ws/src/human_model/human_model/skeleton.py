@@ -1,0 +1,219 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""A skeleton: coordinates, limits, kinematics and inverse dynamics of one person's segments."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from human_model import compiled
+from human_model.anthropometry import SegmentParameters
+from human_model.dh import Chain, load_chain
+from human_model.errors import ChainError, MotionError
+from human_model.frames import quaternion_from_matrix
+from human_model.motion import FRAMES, POINTS, BodyMotion
+from human_model.tables import length_sum, read_table
+from human_model.tree import TreeArrays, build_tree, segment_points
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class ExternalForce:
+    """A force on a segment, at a point of the world, with a free moment.
+
+    Attributes
+    ----------
+    segment : str
+    force : ndarray (3,)
+        On the segment, world axes [N].
+    point : ndarray (3,)
+        Where it acts, world [m].
+    moment : ndarray (3,)
+        Free moment on the segment, world axes [N m].
+    """
+
+    segment: str
+    force: npt.ArrayLike
+    point: npt.ArrayLike
+    moment: npt.ArrayLike = (0.0, 0.0, 0.0)
+
+
+class Skeleton:
+    """Kinematics and dynamics of a chain with one person's segment parameters.
+
+    Coordinates have OpenSim's names, signs and meanings; everything Cartesian is REP-103. At
+    ``q = 0`` the person stands upright with hanging arms, palms in, and the middle of the hips in
+    the world's origin; `standing` has the soles on the ground.
+
+    Parameters
+    ----------
+    name : {'2d_10dof', '3d_40dof'}
+    parameters : SegmentParameters
+        Of the segments of that skeleton.
+
+    Raises
+    ------
+    ChainError
+        If the segments are not those of the skeleton, or a table is inconsistent.
+    """
+
+    def __init__(self, name: str, parameters: SegmentParameters) -> None:
+        self.name = name
+        self.parameters = parameters
+        self.chain: Chain = load_chain(name, parameters.lengths)
+        self.tree: TreeArrays = build_tree(self.chain, parameters)
+        self.coordinates: tuple[str, ...] = self.chain.coordinates
+        self.segments: tuple[str, ...] = parameters.segments
+        limits = {row['coordinate']: (float(row['lower']), float(row['upper']))
+                  for row in read_table('joint_limits') if row['skeleton'] == name}
+        if set(limits) != set(self.coordinates):
+            raise ChainError(f'joint_limits.csv: coordinates of {name} differ from its chain')
+        #: Lower and upper limit (n_q, 2) of each coordinate [rad or m].
+        self.limits: Array = np.array([limits[c] for c in self.coordinates])
+        located = {row['point']: (row['segment'], np.array([
+            length_sum(row[axis], parameters.lengths) for axis in 'xyz']))
+            for row in read_table('points') if row['skeleton'] == name}
+        frames = {row['frame']: row['segment'] for row in read_table('frames')
+                  if row['skeleton'] == name}
+        self._points = {point: located[point] for point in POINTS}
+        self.point_segment, self.point_local = segment_points(self._points, self.segments)
+        self.frame_segment = np.array([self.segments.index(frames[frame]) for frame in FRAMES])
+
+    @property
+    def total_mass(self) -> float:
+        """Mass of all segments [kg]."""
+        return self.parameters.total_mass
+
+    def index(self, coordinate: str) -> int:
+        """Index of a coordinate by name."""
+        if coordinate not in self.coordinates:
+            raise ChainError(f'{self.name}: no coordinate named {coordinate!r}')
+        return self.coordinates.index(coordinate)
+
+    @cached_property
+    def standing_height(self) -> float:
+        """Height of the hips over the soles in neutral standing [m]."""
+        lengths = self.parameters.lengths
+        return float(lengths['thigh'] + lengths['shank'] + lengths['ankle_height'])
+
+    def standing(self) -> Array:
+        """Coordinates (n_q,) of upright standing on the ground at the world's origin."""
+        q = np.zeros(len(self.coordinates))
+        q[self.index('pelvis_ty')] = self.standing_height
+        return q
+
+    def vector(self, values: Mapping[str, float], base: npt.ArrayLike | None = None) -> Array:
+        """Coordinate vector (n_q,) from values by name; the others from base, or 0."""
+        q = np.zeros(len(self.coordinates)) if base is None else self._vector('base', base).copy()
+        for name, value in values.items():
+            q[self.index(name)] = value
+        return q
+
+    def forward(self, q: npt.ArrayLike) -> Array:
+        """Anatomical frames (n_s, 4, 4) of all segments, in the order of ``segments``."""
+        rotation, origin = compiled.segment_frames(self.tree, self._vector('q', q))
+        frames = np.zeros((len(self.segments), 4, 4))
+        frames[:, :3, :3] = rotation
+        frames[:, :3, 3] = origin
+        frames[:, 3, 3] = 1.0
+        return frames
+
+    def points(self, q: npt.ArrayLike) -> dict[str, Array]:
+        """Positions (3,) [m] of the shared points by name."""
+        position = compiled.point_positions(self.tree, self._vector('q', q), self.point_segment,
+                                            self.point_local)
+        return dict(zip(POINTS, position, strict=True))
+
+    def point_array(self, q: npt.ArrayLike) -> Array:
+        """Positions (n, n_p, 3) [m] of the shared points for coordinates (n, n_q)."""
+        return np.array([compiled.point_positions(self.tree, row, self.point_segment,
+                                                  self.point_local)
+                         for row in self._block('q', q)])
+
+    def frame_array(self, q: npt.ArrayLike) -> Array:
+        """Quaternions (n, n_f, 4) xyzw of the shared frames for coordinates (n, n_q)."""
+        rotation = np.array([compiled.segment_frames(self.tree, row)[0][self.frame_segment]
+                             for row in self._block('q', q)])
+        return quaternion_from_matrix(rotation)
+
+    def point_jacobian(self, q: npt.ArrayLike, segment: str, local: npt.ArrayLike) -> Array:
+        """Jacobian (n, 3, n_q) of points (n, 3) [m] given in a segment's anatomical frame."""
+        position = np.ascontiguousarray(np.atleast_2d(np.asarray(local, dtype=np.float64)))
+        which = np.full(len(position), self.parameters.index(segment), dtype=np.int64)
+        return compiled.points_and_jacobian(self.tree, self._vector('q', q), which, position)[1]
+
+    def centre_of_mass(self, q: npt.ArrayLike) -> Array:
+        """Centre of mass (3,) of the whole body [m]."""
+        local = self.parameters.com
+        which = np.arange(len(self.segments))
+        position = compiled.point_positions(self.tree, self._vector('q', q), which, local)
+        return np.asarray(self.parameters.mass @ position / self.total_mass)
+
+    def wrenches(self, external: Sequence[ExternalForce]) -> Array:
+        """Force [N] and moment about the world's origin [N m] (n_s, 6) on each segment."""
+        wrench = np.zeros((len(self.segments), 6))
+        for load in external:
+            force = np.asarray(load.force, dtype=np.float64)
+            at = self.parameters.index(load.segment)
+            wrench[at, :3] += force
+            wrench[at, 3:] += np.cross(np.asarray(load.point, dtype=np.float64), force)
+            wrench[at, 3:] += np.asarray(load.moment, dtype=np.float64)
+        return wrench
+
+    def inverse_dynamics(self, q: npt.ArrayLike, qd: npt.ArrayLike, qdd: npt.ArrayLike,
+                         external: Sequence[ExternalForce] = (),
+                         gravity: float = compiled.GRAVITY) -> Array:
+        """Generalised forces (n_q,) [N m; N for translations] that make this motion.
+
+        ``external`` are forces on segments, gravity not among them. The first coordinates' values
+        are the residual at the pelvis: zero when the external forces explain the motion.
+        """
+        return compiled.newton_euler(
+            self.tree, self._vector('q', q), self._vector('qd', qd), self._vector('qdd', qdd),
+            self.wrenches(external), gravity)
+
+    def body_motion(self, time: npt.ArrayLike, q: npt.ArrayLike, qd: npt.ArrayLike,
+                    qdd: npt.ArrayLike, **forces: Any) -> BodyMotion:
+        """Motion block of coordinates (n, n_q) and their rates.
+
+        ``forces``: ``ground_force``, ``cop``, ``free_moment``, ``hand_force`` (n, 2, 3) and
+        ``box_position`` (n, 3). What is left out is zero; cop and box_position are NaN.
+        """
+        stamps = np.atleast_1d(np.asarray(time, dtype=np.float64))
+        position = self._block('q', q)
+        n = len(stamps)
+        values = {'ground_force': np.zeros((n, 2, 3)), 'cop': np.full((n, 2, 3), np.nan),
+                  'free_moment': np.zeros((n, 2, 3)), 'hand_force': np.zeros((n, 2, 3)),
+                  'box_position': np.full((n, 3), np.nan)}
+        unknown = sorted(set(forces) - set(values))
+        if unknown:
+            raise MotionError(f'body_motion: unknown field {unknown[0]!r}')
+        values.update({name: np.asarray(array) for name, array in forces.items()
+                       if array is not None})
+        return BodyMotion(
+            time=stamps, skeleton=self.name, coordinates=self.coordinates, position=position,
+            velocity=self._block('qd', qd), acceleration=self._block('qdd', qdd),
+            point_names=POINTS, points=self.point_array(position), frame_names=FRAMES,
+            frames=self.frame_array(position), **values)
+
+    def _vector(self, name: str, value: npt.ArrayLike) -> Array:
+        vector = np.ascontiguousarray(value, dtype=np.float64)
+        if vector.shape != (len(self.coordinates),):
+            raise MotionError(f'{self.name}: {name} must have shape ({len(self.coordinates)},), '
+                              f'got {vector.shape}')
+        if not np.all(np.isfinite(vector)):
+            bad = self.coordinates[int(np.argmin(np.isfinite(vector)))]
+            raise MotionError(f'{self.name}: {name}[{bad}] is not finite')
+        return vector
+
+    def _block(self, name: str, value: npt.ArrayLike) -> Array:
+        block = np.atleast_2d(np.ascontiguousarray(value, dtype=np.float64))
+        if block.ndim != 2 or block.shape[1] != len(self.coordinates):
+            raise MotionError(f'{self.name}: {name} must have shape (n, {len(self.coordinates)}), '
+                              f'got {block.shape}')
+        return block

@@ -1,0 +1,23 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""The sagittal skeleton of 10 degrees of freedom (thesis table 2.1)."""
+
+from human_model.anthropometry import SegmentParameters, sagittal_parameters, segment_parameters
+from human_model.skeleton import Skeleton
+from human_model.subject import Subject
+
+
+class Skeleton2D(Skeleton):
+    """Symmetric body in the sagittal plane; paired limbs are one link of double mass.
+
+    The shared points are put at the subject's half widths of hips and shoulders to the right and
+    to the left of the plane, so that the result can be taken over to a model with two sides.
+    """
+
+    def __init__(self, parameters: SegmentParameters) -> None:
+        super().__init__('2d_10dof', parameters)
+
+    @classmethod
+    def of(cls, subject: Subject) -> 'Skeleton2D':
+        """Skeleton of a subject, from mass, stature, sex and measured lengths."""
+        return cls(sagittal_parameters(segment_parameters(subject)))
