@@ -1,0 +1,132 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Clamped cubic B-splines over normalised time (equation 2.12)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import BSpline
+
+from lift_predictor.core.exceptions import SplineError
+
+DEGREE = 3
+MIN_CONTROL_POINTS = 5
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class RestToRestSpline:
+    """Cubic B-spline on [0, 1] that starts and ends at rest (equations 2.12 and 4.7).
+
+    Zero slope at both ends of a clamped spline means that the first two control points are equal, and the last two:
+    they are merged, so that equation 4.7 holds exactly and `n_control - 2` values per joint remain.
+
+    Parameters
+    ----------
+    n_control : int
+        Number of control points per joint, at least 5 (the dissertation's choice).
+
+    Raises
+    ------
+    SplineError
+        Fewer than 5 control points.
+    """
+
+    n_control: int
+
+    def __post_init__(self) -> None:
+        if self.n_control < MIN_CONTROL_POINTS:
+            raise SplineError(
+                f'n_control = {self.n_control}: at least {MIN_CONTROL_POINTS} control points are needed'
+            )
+
+    @property
+    def n_free(self) -> int:
+        """Free values per joint."""
+        return self.n_control - 2
+
+    @property
+    def n_spans(self) -> int:
+        """Polynomial pieces."""
+        return self.n_control - DEGREE
+
+    @property
+    def knots(self) -> Array:
+        """Clamped uniform knot vector, shape (n_control + 4,)."""
+        inner = np.linspace(0.0, 1.0, self.n_spans + 1)
+        return np.concatenate((np.zeros(DEGREE), inner, np.ones(DEGREE)))
+
+    def basis(self, s: Array, derivative: int = 0) -> Array:
+        """Basis values (or derivatives by s) of the free control values.
+
+        Parameters
+        ----------
+        s : array, shape (n,)
+            Normalised times in [0, 1].
+        derivative : int
+            0, 1 or 2.
+
+        Returns
+        -------
+        array, shape (n, n_free)
+            Rows sum to 1 for derivative 0, to 0 otherwise.
+
+        Raises
+        ------
+        SplineError
+            A time outside [0, 1].
+        """
+        s = np.asarray(s, dtype=float)
+        if s.size and not (s.min() >= 0.0 and s.max() <= 1.0):
+            raise SplineError(f's = {s.min():g} .. {s.max():g}: outside [0, 1]')
+        full = BSpline(self.knots, np.eye(self.n_control), DEGREE)
+        values = np.asarray(full(s, nu=derivative))
+        return values @ self._merge()
+
+    def fit(self, s: Array, values: Array) -> Array:
+        """Free control values nearest to samples in the least-squares sense.
+
+        Parameters
+        ----------
+        s : array, shape (n,)
+            Normalised times.
+        values : array, shape (n, n_q)
+            Samples; the first and last are met exactly if they are at s = 0 and s = 1.
+
+        Returns
+        -------
+        array, shape (n_free, n_q)
+        """
+        basis = self.basis(s)
+        first, last = values[0], values[-1]
+        inner = basis[:, 1:-1]
+        rest = values - basis[:, :1] * first - basis[:, -1:] * last
+        middle = np.linalg.lstsq(inner, rest, rcond=None)[0]
+        return np.vstack((first, middle, last))
+
+    def _merge(self) -> Array:
+        merge = np.zeros((self.n_control, self.n_free))
+        merge[1:-1] = np.eye(self.n_free)
+        merge[0, 0] = 1.0
+        merge[-1, -1] = 1.0
+        return merge
+
+
+def simpson_weights(n_nodes: int) -> Array:
+    """Weights of the composite Simpson rule on [0, 1] (n_nodes odd), shape (n_nodes,).
+
+    Raises
+    ------
+    SplineError
+        An even number of nodes, or fewer than 3.
+    """
+    if n_nodes < 3 or n_nodes % 2 == 0:  # noqa: PLR2004
+        raise SplineError(f'n_nodes = {n_nodes}: an odd number of at least 3 is needed')
+    weights = np.ones(n_nodes)
+    weights[1:-1:2] = 4.0
+    weights[2:-1:2] = 2.0
+    return weights / (3.0 * (n_nodes - 1))

@@ -1,0 +1,239 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""The lift as a nonlinear programme (equations 2.10 to 2.12 and 4.1 to 4.8).
+
+The node functions are mapped over uniform time nodes and gathered into the programme by the constant matrices of the spline:
+gradient, Jacobian and Hessian are products of small dense blocks with them. Person and task are parameters, so that the
+functions depend on the numbers of control points and nodes only and are compiled once for everybody.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
+
+from lift_predictor.core.bspline import RestToRestSpline, simpson_weights
+from lift_predictor.core.exceptions import SplineError
+from lift_predictor.core.node_functions import N_NODE, NODE_ROWS, NODE_UPPER, node_functions
+from lift_predictor.core.parameters import JOINTS, N_JOINTS, N_PARAMETERS, SHAPES
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Sizes that fix the structure of the programme.
+
+    Attributes
+    ----------
+    n_control : int
+        Control points per joint.
+    n_nodes : int
+        Uniform time nodes of the constraints, and of Simpson's rule for the effort: an even number of intervals in each
+        spline piece, and so at least 2 (n_control - 3) + 1 nodes, as with fewer the optimiser finds motions that violate
+        the constraints between the nodes.
+
+    Raises
+    ------
+    SplineError
+        Numbers that do not fit.
+    """
+
+    n_control: int
+    n_nodes: int
+
+    def __post_init__(self) -> None:
+        spans = RestToRestSpline(self.n_control).n_spans
+        if self.n_nodes < 2 * spans + 1 or (self.n_nodes - 1) % (2 * spans):
+            raise SplineError(
+                f'n_nodes = {self.n_nodes}: with n_control = {self.n_control}, '
+                f'{2 * spans} k + 1 nodes are needed'
+            )
+
+    @property
+    def spline(self) -> RestToRestSpline:
+        """Spline of each joint."""
+        return RestToRestSpline(self.n_control)
+
+    @property
+    def n_variables(self) -> int:
+        """Optimisation variables: the free control values, all joints of one control point together."""
+        return self.spline.n_free * N_JOINTS
+
+    @property
+    def times(self) -> Array:
+        """Normalised node times, shape (n_nodes,)."""
+        return np.linspace(0.0, 1.0, self.n_nodes)
+
+    @cached_property
+    def row_names(self) -> tuple[str, ...]:
+        """Name of every constraint row, for messages."""
+        percent = [f'{100 * s:.0f} % of the lift' for s in self.times]
+        return (
+            *(f'{row} at {when}' for when in percent for row in NODE_ROWS),
+            *(f'joint angle limit (4.1) of {j} at {when}' for when in percent for j in JOINTS),
+            *(
+                f'hand position (4.6) {axis} at the {end}'
+                for end in ('start', 'end')
+                for axis in ('forward', 'up')
+            ),
+            *(f'posture (4.8) of {joint} at 50 % of the lift' for joint in JOINTS),
+        )
+
+
+@dataclass(frozen=True)
+class LiftBounds:
+    """What the task demands of the programme, beside its parameters.
+
+    Attributes
+    ----------
+    angle_lower, angle_upper : array, shape (6,)
+        Joint limits (equation 4.1) [rad].
+    posture_lower, posture_upper : array, shape (3, 6)
+        Posture at 0, T/2 and T (equation 4.8) [rad], joint limits included; infinite where it is free.
+    hand : array, shape (2, 2)
+        Grip (forward, up) at start and end (equation 4.6) [m].
+    """
+
+    angle_lower: Array
+    angle_upper: Array
+    posture_lower: Array
+    posture_upper: Array
+    hand: Array
+
+    def variables(self, grid: Grid) -> tuple[Array, Array]:
+        """Bounds of the variables: the postures at both ends, which are control points."""
+        lower = np.full((grid.spline.n_free, N_JOINTS), -np.inf)
+        upper = -lower
+        lower[0], upper[0] = self.posture_lower[0], self.posture_upper[0]
+        lower[-1], upper[-1] = self.posture_lower[2], self.posture_upper[2]
+        return lower.ravel(), upper.ravel()
+
+    def rows(self, grid: Grid) -> tuple[Array, Array]:
+        """Bounds of the constraint rows, in the order of `Grid.row_names`."""
+        n = grid.n_nodes
+        lower = np.concatenate((
+            np.zeros(n * len(NODE_ROWS)),
+            np.tile(self.angle_lower, n),
+            self.hand.ravel(),
+            self.posture_lower[1],
+        ))
+        upper = np.concatenate((
+            np.tile(NODE_UPPER, n),
+            np.tile(self.angle_upper, n),
+            self.hand.ravel(),
+            self.posture_upper[1],
+        ))
+        return lower, upper
+
+
+def programme_functions(grid: Grid) -> list[Any]:
+    """Functions of the programme under the names that CasADi's solvers look for, and the report function.
+
+    Returns
+    -------
+    list of casadi.Function
+        `nlp`, `nlp_f`, `nlp_g`, `nlp_grad_f`, `nlp_jac_g`, `nlp_hess_l` (upper triangle),
+        `nlp_grad`, `report`.
+    """
+    node = node_functions()
+    n = grid.n_nodes
+    x = ca.MX.sym('x', grid.n_variables)
+    p = ca.MX.sym('p', N_PARAMETERS)
+    lam_f = ca.MX.sym('lam_f')
+    lam_g = ca.MX.sym('lam_g', len(grid.row_names))
+    duration = p[_offset('duration')]
+    weights = ca.DM(simpson_weights(n))
+
+    gather = _gather(grid)
+    z = ca.reshape(ca.mtimes(gather, x), N_NODE, n)
+    angles, middle = _linear_rows(grid)
+    q_ends = (x[:N_JOINTS], x[-N_JOINTS:])
+
+    def stack(rows: Any, hands: list[Any]) -> Any:
+        return ca.vertcat(ca.vec(rows), ca.mtimes(angles, x), *hands, ca.mtimes(middle, x))
+
+    effort, rows = node['node'].map(n)(z, p)
+    f = duration * ca.dot(weights, effort.T)
+    g = stack(rows, [node['hand'](q, p) for q in q_ends])
+
+    effort_j, rows_j, d_effort, d_rows = node['node_jac'].map(n)(z, p)
+    f_j = duration * ca.dot(weights, effort_j.T)
+    grad_f = duration * ca.mtimes(gather.T, ca.vec(d_effort * ca.repmat(weights.T, N_NODE, 1)))
+    blocks = ca.diagcat(*ca.horzsplit(d_rows, N_NODE))
+    hand_values, hand_rows = [], []
+    for end, q in enumerate(q_ends):
+        value, slope = node['hand_jac'](q, p)
+        hand_values.append(value)
+        before = ca.DM(2, 0 if end == 0 else grid.n_variables - N_JOINTS)
+        after = ca.DM(2, grid.n_variables - N_JOINTS if end == 0 else 0)
+        hand_rows.append(ca.horzcat(before, slope, after))
+    g_j = stack(rows_j, hand_values)
+    jac_g = ca.vertcat(ca.mtimes(blocks, gather), angles, *hand_rows, middle)
+
+    n_rows = len(NODE_ROWS)
+    node_multiplier = ca.reshape(lam_g[: n * n_rows], n_rows, n)
+    sigma = lam_f * duration * weights.T
+    hessians = node['node_hess'].map(n)(z, p, sigma, node_multiplier)
+    hess = ca.mtimes(ca.mtimes(gather.T, ca.diagcat(*ca.horzsplit(hessians, N_NODE))), gather)
+    first_hand = n * (n_rows + N_JOINTS)
+    ends = [
+        node['hand_hess'](q, p, lam_g[first_hand + 2 * end : first_hand + 2 * end + 2])
+        for end, q in enumerate(q_ends)
+    ]
+    between = grid.n_variables - 2 * N_JOINTS
+    hess = hess + ca.diagcat(ends[0], ca.DM(between, between), ends[1])
+
+    point = ([x, p], ['x', 'p'])
+    return [
+        ca.Function('nlp', point[0], [f, g], point[1], ['f', 'g']),
+        ca.Function('nlp_f', point[0], [f], point[1], ['f']),
+        ca.Function('nlp_g', point[0], [g], point[1], ['g']),
+        ca.Function('nlp_grad_f', point[0], [f_j, grad_f], point[1], ['f', 'grad_f_x']),
+        ca.Function('nlp_jac_g', point[0], [g_j, jac_g], point[1], ['g', 'jac_g_x']),
+        ca.Function(
+            'nlp_hess_l',
+            [x, p, lam_f, lam_g],
+            [ca.triu(hess)],
+            ['x', 'p', 'lam_f', 'lam_g'],
+            ['triu_hess_gamma_x_x'],
+        ),
+        # CasADi asks for this one at start-up; sensitivities to the parameters are not used and left out.
+        ca.Function(
+            'nlp_grad',
+            [x, p, lam_f, lam_g],
+            [f_j, g_j, lam_f * grad_f + ca.mtimes(jac_g.T, lam_g), ca.DM(N_PARAMETERS, 1)],
+            ['x', 'p', 'lam_f', 'lam_g'],
+            ['f', 'g', 'grad_gamma_x', 'grad_gamma_p'],
+        ),
+        node['report'],
+    ]
+
+
+def _offset(field: str) -> int:
+    start = 0
+    for name, (rows, columns) in SHAPES.items():
+        if name == field:
+            return start
+        start += rows * columns
+    raise KeyError(field)
+
+
+def _gather(grid: Grid) -> Any:
+    """Sparse matrix from the variables to the stacked node variables, (18 n, n_variables)."""
+    basis = [grid.spline.basis(grid.times, derivative) for derivative in range(3)]
+    blocks = np.stack(basis, axis=1).reshape(3 * grid.n_nodes, grid.spline.n_free)
+    return ca.sparsify(ca.DM(np.kron(blocks, np.eye(N_JOINTS))), 1e-12)
+
+
+def _linear_rows(grid: Grid) -> tuple[Any, Any]:
+    """Joint angles at all nodes and at half time, as matrices on the variables."""
+    unit = np.eye(N_JOINTS)
+    angles = np.kron(grid.spline.basis(grid.times), unit)
+    middle = np.kron(grid.spline.basis(np.array([0.5])), unit)
+    return ca.sparsify(ca.DM(angles), 1e-12), ca.sparsify(ca.DM(middle), 1e-12)

@@ -1,0 +1,136 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Effort and constraints of one instant of the lift, with exact first and second derivatives."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import casadi as ca
+
+from lift_predictor.core.model_2d import chain_state, torque_limits
+from lift_predictor.core.parameters import (
+    BODIES,
+    CIRCLE_BODIES,
+    CIRCLES_PER_BODY,
+    JOINTS,
+    N_JOINTS,
+    N_PARAMETERS,
+    unpack,
+)
+
+N_NODE: Final = 3 * N_JOINTS
+"""Node variables: joint angles and their first and second derivatives by normalised time."""
+
+NODE_ROWS: Final = (
+    *(f'joint torque limit (4.2) of {joint}' for joint in JOINTS),
+    'balance (4.3) at the rear edge of the foot support region',
+    'balance (4.3) at the front edge of the foot support region',
+    *(
+        f'collision (4.5) of the box with the {body}'
+        for body in CIRCLE_BODIES
+        for _ in range(CIRCLES_PER_BODY)
+    ),
+)
+NODE_UPPER: Final = (1.0,) * N_JOINTS + (float('inf'),) * (len(NODE_ROWS) - N_JOINTS)
+"""Upper bounds of the node rows; all lower bounds are 0."""
+
+CENTRES: Final = ('ankle', 'knee', 'hip', 'lumbar', 'shoulder', 'elbow', 'hand')
+REPORT_OUTPUTS: Final = (
+    'torque',
+    'lower',
+    'upper',
+    'ground_force',
+    'ground_moment',
+    'hand_force',
+    'rows',
+    'effort',
+    'centres',
+    'segment_angle',
+)
+
+
+def node_functions() -> dict[str, Any]:
+    """Return the CasADi functions of one instant by name.
+
+    Returns
+    -------
+    dict
+        `node(z, p)` -> effort, rows; `node_jac` adds their derivatives by z; `node_hess(z, p, sigma, multiplier)` -> Hessian
+        of sigma effort + multiplier' rows; `hand`, `hand_jac`, `hand_hess` the same for the grip (q instead of z);
+        `report(q, dq, ddq, p)` -> `REPORT_OUTPUTS` in physical units.
+
+    Notes
+    -----
+    Effort is the integrand of the first term of equation 2.11, over the six joints above the feet (no strength of the
+    metatarsophalangeal joint is published). Rows are scaled to order 1: torques are 0 at the lower and 1 at the upper
+    dynamic limit, balance is divided by weight times foot length, collision by the squared sum of the radii.
+    """
+    p = ca.SX.sym('p', N_PARAMETERS)
+    z = ca.SX.sym('z', N_NODE)
+    sigma = ca.SX.sym('sigma')
+    multiplier = ca.SX.sym('multiplier', len(NODE_ROWS))
+    duration = unpack(p)['duration'][0][0]
+    instant = _instant(
+        z[:N_JOINTS],
+        z[N_JOINTS : 2 * N_JOINTS] / duration,
+        z[2 * N_JOINTS :] / duration**2,
+        p,
+    )
+    effort, rows = instant['effort'], instant['rows']
+    gradient = ca.gradient(sigma * effort + ca.dot(multiplier, rows), z)
+
+    q, dq, ddq = (ca.SX.sym(name, N_JOINTS) for name in ('q', 'dq', 'ddq'))
+    physical = _instant(q, dq, ddq, p)
+    hand = physical['centres'][-2:]
+    hand_multiplier = ca.SX.sym('hand_multiplier', 2)
+    return {
+        'node': ca.Function('node', [z, p], [effort, rows]),
+        'node_jac': ca.Function(
+            'node_jac', [z, p], [effort, rows, ca.gradient(effort, z), ca.jacobian(rows, z)]
+        ),
+        'node_hess': ca.Function(
+            'node_hess', [z, p, sigma, multiplier], [ca.jacobian(gradient, z)]
+        ),
+        'hand': ca.Function('hand', [q, p], [hand]),
+        'hand_jac': ca.Function('hand_jac', [q, p], [hand, ca.jacobian(hand, q)]),
+        'hand_hess': ca.Function(
+            'hand_hess',
+            [q, p, hand_multiplier],
+            [ca.hessian(ca.dot(hand_multiplier, hand), q)[0]],
+        ),
+        'report': ca.Function(
+            'report',
+            [q, dq, ddq, p],
+            [physical[name] for name in REPORT_OUTPUTS],
+            ['q', 'dq', 'ddq', 'p'],
+            list(REPORT_OUTPUTS),
+        ),
+    }
+
+
+def _instant(q: Any, dq: Any, ddq: Any, p: Any) -> dict[str, Any]:
+    blocks = unpack(p)
+    state = chain_state(q, dq, ddq, p)
+    lower, upper = torque_limits(q, dq, p)
+    mass = sum(row[0] for row in blocks['body']) + blocks['box_mass'][0][0]
+    rear, front = blocks['support'][0]
+    scale = (front - rear) * mass * blocks['gravity'][0][0]
+    vertical = state.ground_force[1]
+    return {
+        'torque': state.torque,
+        'lower': lower,
+        'upper': upper,
+        'ground_force': state.ground_force,
+        'ground_moment': state.ground_moment,
+        'hand_force': state.hand_force,
+        'effort': ca.sumsqr(state.torque / (upper - lower)),
+        'rows': ca.vertcat(
+            (state.torque - lower) / (upper - lower),
+            (state.ground_moment - rear * vertical) / scale,
+            (front * vertical - state.ground_moment) / scale,
+            state.clearance,
+        ),
+        'centres': ca.vertcat(*(state.position[name] for name in CENTRES)),
+        'segment_angle': ca.vertcat(*(state.angle[name][0] for name in BODIES)),
+    }

@@ -1,0 +1,133 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Everything about a person and a task as one vector, so that the compiled functions serve everybody."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lift_predictor.core.exceptions import TaskError
+
+Array = NDArray[np.float64]
+
+JOINTS: Final = (
+    'lumbar_extension',
+    'arm_flex',
+    'elbow_flex',
+    'hip_flexion',
+    'knee_angle',
+    'ankle_angle',
+)
+"""Joint coordinates of the chain above the fixed feet, in the order of the 2D skeleton."""
+
+BODIES: Final = ('foot', 'shank', 'thigh', 'pelvis', 'trunk', 'upper_arm', 'forearm')
+"""Segments from the ground up; paired ones count both sides. The trunk carries the head, the forearm the hand."""
+
+CIRCLE_BODIES: Final = ('shank', 'thigh', 'pelvis', 'trunk')
+"""Segments that carry collision circles."""
+CIRCLES_PER_BODY: Final = 3
+
+N_JOINTS: Final = len(JOINTS)
+N_BODY: Final = 6
+N_STRENGTH: Final = 8
+N_CIRCLE: Final = 3
+
+SHAPES: Final[dict[str, tuple[int, int]]] = {
+    'body': (len(BODIES), N_BODY),
+    'strength_lower': (N_JOINTS, N_STRENGTH),
+    'strength_upper': (N_JOINTS, N_STRENGTH),
+    'circle': (len(CIRCLE_BODIES) * CIRCLES_PER_BODY, N_CIRCLE),
+    'ankle': (1, 2),
+    'support': (1, 2),
+    'ground_height': (1, 1),
+    'gravity': (1, 1),
+    'duration': (1, 1),
+    'box_mass': (1, 1),
+    'box_radius': (1, 1),
+    'box_from_hand': (1, 2),
+}
+N_PARAMETERS: Final = sum(rows * columns for rows, columns in SHAPES.values())
+
+
+@dataclass(frozen=True)
+class LiftParameters:
+    """Numbers of one person and one task. Plane coordinates are (forward, up) in the sagittal plane.
+
+    Attributes
+    ----------
+    body : array, shape (7, 6)
+        Per segment of `BODIES`: mass [kg], centre of mass (forward, up) [m], inertia about it [kg m^2], next joint
+        (forward, up) [m]. Segment frames have their origin at the OpenSim-proximal joint (foot at the ankle, shank at
+        the knee, thigh and pelvis at the hip, trunk at the lumbar joint, upper arm at the shoulder, forearm at the
+        elbow) and are parallel to the world in upright standing. The next joint is the distal one of shank, thigh and
+        arm, the lumbar joint for the pelvis, the shoulder for the trunk, the grip for the forearm; unused for the foot.
+    strength_lower, strength_upper : array, shape (6, 8)
+        Coefficients of equations 2.14 and 2.17 per joint in its own coordinate, [N m], z-score and both limbs included;
+        the lower ones give a negative torque.
+    circle : array, shape (12, 3)
+        Three circles on each of `CIRCLE_BODIES`: centre in the segment frame (forward, up) [m], radius [m].
+        A radius that is not positive switches the circle off.
+    ankle : array, shape (2,)
+        Ankle in the laboratory [m]; the feet are flat and do not move.
+    support : array, shape (2,)
+        Rear and front edge of the foot support region [m].
+    ground_height, gravity, duration, box_mass : float
+        [m], [m/s^2], [s], [kg].
+    box_radius : float
+        Half depth of the box [m] (r2 of equation 4.5).
+    box_from_hand : array, shape (2,)
+        Box centre minus grip [m]; the box stays level.
+    """
+
+    body: Array
+    strength_lower: Array
+    strength_upper: Array
+    circle: Array
+    ankle: Array
+    support: Array
+    ground_height: float
+    gravity: float
+    duration: float
+    box_mass: float
+    box_radius: float
+    box_from_hand: Array
+
+    def pack(self) -> Array:
+        """Return the parameter vector of the compiled functions, shape (N_PARAMETERS,).
+
+        Raises
+        ------
+        TaskError
+            A field of the wrong shape or a value that is not finite.
+        """
+        parts = []
+        for name, shape in SHAPES.items():
+            value = np.asarray(getattr(self, name), dtype=float)
+            if value.size != shape[0] * shape[1]:
+                raise TaskError(f'{name}: shape {value.shape}, expected {shape}')
+            if not np.all(np.isfinite(value)):
+                raise TaskError(f'{name}: not finite: {value.tolist()}')
+            parts.append(value.ravel())
+        return np.concatenate(parts)
+
+    @property
+    def total_mass(self) -> float:
+        """Mass of body and box [kg]."""
+        return float(self.body[:, 0].sum() + self.box_mass)
+
+
+def unpack(vector: Any) -> dict[str, Any]:
+    """Split a symbolic parameter vector into named blocks (matrices are row-major)."""
+    blocks = {}
+    start = 0
+    for name, (rows, columns) in SHAPES.items():
+        stop = start + rows * columns
+        blocks[name] = [
+            [vector[start + r * columns + c] for c in range(columns)] for r in range(rows)
+        ]
+        start = stop
+    return blocks

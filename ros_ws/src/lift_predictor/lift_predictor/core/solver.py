@@ -1,0 +1,189 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""IPOPT with exact derivatives on the lift programme, from several starts, the best kept."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
+
+from lift_predictor.core.compiled import Programme
+from lift_predictor.core.nlp import LiftBounds
+from lift_predictor.core.parameters import JOINTS
+
+Array = NDArray[np.float64]
+
+TOLERANCE: Final = 1e-8
+"""IPOPT's default relative tolerance."""
+FEASIBLE: Final = 1e-5
+"""Largest violation of a scaled constraint row that counts as met."""
+
+
+@dataclass(frozen=True)
+class Start:
+    """Named initial guess: free control values, shape (n_free, 6) [rad]."""
+
+    name: str
+    control: Array
+
+
+@dataclass(frozen=True)
+class Optimum:
+    """Where one IPOPT run ended.
+
+    Attributes
+    ----------
+    start : str
+        Name of the start.
+    converged : bool
+        Whether IPOPT reports a solution and its constraints hold to `FEASIBLE`.
+    outcome : str
+        IPOPT's own words.
+    control : array, shape (n_free, 6)
+        Free control values [rad].
+    objective : float
+        Effort [s].
+    iterations : int
+        Iterations.
+    violation : float
+        Largest violation of a bound or scaled row.
+    violated : str
+        Name of that row; empty when nothing is violated.
+    stationarity, complementarity : float
+        Largest element of the Lagrangian's gradient, and of multiplier times slack.
+    solve_time : float
+        Wall time [s].
+    """
+
+    start: str
+    converged: bool
+    outcome: str
+    control: Array
+    objective: float
+    iterations: int
+    violation: float
+    violated: str
+    stationarity: float
+    complementarity: float
+    solve_time: float
+
+
+class LiftSolver:
+    """IPOPT on one programme; built once, used for any person and task.
+
+    Parameters
+    ----------
+    programme : Programme
+        Compiled functions.
+    time_limit : float
+        Wall time of one IPOPT run at most [s].
+    max_iterations : int
+        Iterations of one run at most.
+    """
+
+    def __init__(
+        self, programme: Programme, time_limit: float = 10.0, max_iterations: int = 500
+    ) -> None:
+        self.programme = programme
+        self.time_limit = time_limit
+        options: dict[str, Any] = {
+            'print_time': False,
+            'error_on_fail': False,
+            'calc_lam_p': False,
+            'ipopt.print_level': 0,
+            'ipopt.sb': 'yes',
+            'ipopt.tol': TOLERANCE,
+            'ipopt.max_iter': max_iterations,
+            'ipopt.max_wall_time': time_limit,
+        }
+        if programme.library is not None:
+            self._ipopt = ca.nlpsol('lift', 'ipopt', str(programme.library), options)
+        else:
+            functions = programme.functions
+            options |= {
+                'grad_f': functions['nlp_grad_f'],
+                'jac_g': functions['nlp_jac_g'],
+                'hess_lag': functions['nlp_hess_l'],
+            }
+            x, p = ca.MX.sym('x', programme.grid.n_variables), functions['nlp'].mx_in('p')
+            f, g = functions['nlp'](x, p)
+            self._ipopt = ca.nlpsol('lift', 'ipopt', {'x': x, 'p': p, 'f': f, 'g': g}, options)
+
+    def solve(self, parameters: Array, bounds: LiftBounds, start: Start) -> Optimum:
+        """Run IPOPT from one start.
+
+        Parameters
+        ----------
+        parameters : array
+            `LiftParameters.pack`.
+        bounds : LiftBounds
+            Demands of the task.
+        start : Start
+            Initial guess.
+        """
+        begin = time.perf_counter()
+        grid = self.programme.grid
+        lbx, ubx = bounds.variables(grid)
+        lbg, ubg = bounds.rows(grid)
+        x0 = np.clip(start.control.ravel(), lbx, ubx)
+        result = self._ipopt(x0=x0, p=parameters, lbx=lbx, ubx=ubx, lbg=lbg, ubg=ubg)
+        stats = self._ipopt.stats()
+        elapsed = time.perf_counter() - begin
+
+        x = np.asarray(result['x']).ravel()
+        lam_x, lam_g = (np.asarray(result[key]).ravel() for key in ('lam_x', 'lam_g'))
+        _, gradient = self.programme.functions['nlp_grad_f'](x, parameters)
+        g, jacobian = self.programme.functions['nlp_jac_g'](x, parameters)
+        g = np.asarray(g).ravel()
+        stationarity = np.asarray(gradient).ravel() + lam_x + jacobian.sparse().T @ lam_g
+        values = np.concatenate((x, g))
+        low, high = np.concatenate((lbx, lbg)), np.concatenate((ubx, ubg))
+        violation, index = _largest_violation(values, low, high)
+        multipliers = np.concatenate((lam_x, lam_g))
+        slack = np.where(multipliers > 0.0, high - values, values - low)
+        active = multipliers != 0.0
+        complementarity = np.abs(multipliers[active] * slack[active])
+        return Optimum(
+            start=start.name,
+            converged=bool(stats['success']) and violation <= FEASIBLE,
+            outcome=str(stats['return_status']),
+            control=x.reshape(grid.spline.n_free, -1),
+            objective=float(result['f']),
+            iterations=int(stats['iter_count']),
+            violation=violation,
+            violated=self._name(index) if violation > FEASIBLE else '',
+            stationarity=float(np.abs(stationarity).max()),
+            complementarity=float(complementarity.max(initial=0.0)),
+            solve_time=elapsed,
+        )
+
+    def solve_all(
+        self, parameters: Array, bounds: LiftBounds, starts: Sequence[Start]
+    ) -> tuple[Optimum, ...]:
+        """Run IPOPT from every start; the best comes first.
+
+        Converged runs come before the others, then the lower effort, or the smaller violation where none converged.
+        """
+        runs = [self.solve(parameters, bounds, start) for start in starts]
+        return tuple(
+            sorted(runs, key=lambda r: (not r.converged, r.objective if r.converged else r.violation))
+        )
+
+    def _name(self, index: int) -> str:
+        n = self.programme.grid.n_variables
+        if index >= n:
+            return self.programme.grid.row_names[index - n]
+        end = 'start' if index < len(JOINTS) else 'end'
+        return f'posture (4.8) of {JOINTS[index % len(JOINTS)]} at the {end}'
+
+
+def _largest_violation(values: Array, low: Array, high: Array) -> tuple[float, int]:
+    excess = np.maximum(low - values, values - high)
+    index = int(np.argmax(excess))
+    return float(max(excess[index], 0.0)), index
