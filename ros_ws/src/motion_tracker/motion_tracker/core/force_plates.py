@@ -1,0 +1,218 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Ground reaction, centre of pressure and free moment from the wrenches of two force plates."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from motion_tracker.core.errors import ForcePlateError
+
+Array = npt.NDArray[np.float64]
+
+#: Standard gravity [m/s^2] (3rd CGPM 1901).
+STANDARD_GRAVITY = 9.80665
+
+SIDES = ('right', 'left')
+
+
+@dataclass(frozen=True, eq=False)
+class PlateGeometry:
+    """Where a plate stands and how its wrench is expressed.
+
+    Attributes
+    ----------
+    name : str
+        For messages.
+    origin : ndarray (3,)
+        Point the plate's moment refers to, in the world [m].
+    rotation : ndarray (3, 3)
+        World from plate axes.
+    surface_height : float
+        Height of the surface the foot stands on, in the world [m].
+    corners : ndarray (n, 3) or None
+        Corners of the surface in the world [m], in order round it; None if not known.
+    """
+
+    name: str
+    origin: Array = field(default_factory=lambda: np.zeros(3))
+    rotation: Array = field(default_factory=lambda: np.eye(3))
+    surface_height: float = 0.0
+    corners: Array | None = None
+
+    def __post_init__(self) -> None:
+        """Check shapes and that the rotation is one."""
+        origin = np.array(self.origin, dtype=np.float64)
+        rotation = np.array(self.rotation, dtype=np.float64)
+        if origin.shape != (3,) or not np.all(np.isfinite(origin)):
+            raise ForcePlateError(f'{self.name}.origin: three finite numbers needed, got {origin}')
+        if rotation.shape != (3, 3) or np.max(np.abs(rotation @ rotation.T - np.eye(3))) > 1e-6 \
+                or np.linalg.det(rotation) < 0:
+            raise ForcePlateError(f'{self.name}.rotation: not a rotation matrix')
+        if not np.isfinite(self.surface_height):
+            raise ForcePlateError(f'{self.name}.surface_height: {self.surface_height} m')
+        object.__setattr__(self, 'origin', origin)
+        object.__setattr__(self, 'rotation', rotation)
+        if self.corners is not None:
+            corners = np.array(self.corners, dtype=np.float64)
+            if corners.ndim != 2 or corners.shape[0] < 3 or corners.shape[1] != 3:
+                raise ForcePlateError(f'{self.name}.corners: shape (n >= 3, 3) is needed, '
+                                      f'got {corners.shape}')
+            object.__setattr__(self, 'corners', corners)
+
+
+@dataclass(frozen=True, eq=False)
+class GroundReaction:
+    """Reaction of the ground on one foot, in the world; n samples.
+
+    Attributes
+    ----------
+    force : ndarray (n, 3)
+        Force of the ground on the person [N]; zero while unloaded.
+    cop : ndarray (n, 3)
+        Centre of pressure on the plate's surface [m]; NaN while unloaded.
+    free_moment : ndarray (n, 3)
+        Moment about the centre of pressure [N m]; only its vertical part is not zero.
+    loaded : ndarray (n,) of bool
+        Whether the vertical force exceeds the threshold.
+    """
+
+    force: Array
+    cop: Array
+    free_moment: Array
+    loaded: npt.NDArray[np.bool_]
+
+
+def ground_reaction(force: npt.ArrayLike, moment: npt.ArrayLike, plate: PlateGeometry,
+                    threshold: float) -> GroundReaction:
+    """Centre of pressure and free moment on the plate's surface.
+
+    With F and M of the plate turned into the world and h the height of the surface above the
+    plate's origin, the point (x, y, h) about which M has no horizontal part is
+    ``x = (h Fx - My) / Fz``, ``y = (Mx + h Fy) / Fz``, and the free moment is
+    ``Tz = Mz - x Fy + y Fx`` (Winter 2009, section 5.2.1, with the surface above the origin).
+
+    Parameters
+    ----------
+    force, moment
+        Force of the ground on the person [N] and moment about the plate's origin [N m] in the
+        plate's axes, shape (n, 3).
+    plate
+        Geometry.
+    threshold
+        Vertical force [N] below which the foot counts as off the plate: force and moment are
+        then zero and the centre of pressure is NaN.
+
+    Raises
+    ------
+    ForcePlateError
+        If the shapes do not agree or the threshold is not positive.
+    """
+    f = np.atleast_2d(np.asarray(force, dtype=np.float64)) @ plate.rotation.T
+    m = np.atleast_2d(np.asarray(moment, dtype=np.float64)) @ plate.rotation.T
+    if f.shape != m.shape or f.shape[-1] != 3:
+        raise ForcePlateError(f'{plate.name}: force {f.shape} and moment {m.shape} do not agree')
+    if not threshold > 0:
+        raise ForcePlateError(f'{plate.name}: threshold must be positive, got {threshold} N')
+    loaded = f[:, 2] > threshold
+    fz = np.where(loaded, f[:, 2], 1.0)
+    height = plate.surface_height - plate.origin[2]
+    x = (height * f[:, 0] - m[:, 1]) / fz
+    y = (m[:, 0] + height * f[:, 1]) / fz
+    free = m[:, 2] - x * f[:, 1] + y * f[:, 0]
+    cop = np.stack([x + plate.origin[0], y + plate.origin[1],
+                    np.full_like(x, plate.surface_height)], axis=-1)
+    cop[~loaded] = np.nan
+    force_out = np.where(loaded[:, None], f, 0.0)
+    free_moment = np.zeros_like(f)
+    free_moment[:, 2] = np.where(loaded, free, 0.0)
+    return GroundReaction(force_out, cop, free_moment, loaded)
+
+
+def total_reaction(feet: Sequence[GroundReaction]) -> tuple[Array, Array]:
+    """Total ground reaction force (n, 3) [N] and its centre of pressure (n, 3) [m].
+
+    The total centre of pressure is the mean of the feet's weighted by their vertical forces; it
+    is NaN where no foot is loaded.
+    """
+    if not feet:
+        raise ForcePlateError('total: at least one foot is needed')
+    force = np.sum([foot.force for foot in feet], axis=0)
+    weight = np.sum([foot.force[:, 2] for foot in feet], axis=0)
+    moment = np.sum([np.where(foot.loaded[:, None], foot.force[:, 2:] * foot.cop, 0.0)
+                     for foot in feet], axis=0)
+    with np.errstate(invalid='ignore', divide='ignore'):
+        cop = np.where(weight[:, None] > 0, moment / weight[:, None], np.nan)
+    return np.asarray(force), np.asarray(cop)
+
+
+@dataclass(frozen=True)
+class MassCheck:
+    """Comparison of the plates' weight in quiet standing with the subject's mass.
+
+    Attributes
+    ----------
+    plate_mass : float
+        Mean vertical force over standard gravity [kg].
+    subject_mass : float
+        Body mass as entered [kg].
+    deviation : float
+        (plate - subject) / subject.
+    tolerance : float
+        Deviation that is accepted.
+    samples : int
+        Quiet samples that were averaged.
+    """
+
+    plate_mass: float
+    subject_mass: float
+    deviation: float
+    tolerance: float
+    samples: int
+
+    @property
+    def ok(self) -> bool:
+        """Whether the plates agree with the subject's mass."""
+        return abs(self.deviation) <= self.tolerance
+
+    def __str__(self) -> str:
+        """One line for a log."""
+        return (f'force plates: {self.plate_mass:.1f} kg in quiet standing, subject.mass: '
+                f'{self.subject_mass:.1f} kg, deviation {100 * self.deviation:+.1f} %')
+
+
+def check_body_mass(vertical: npt.ArrayLike, rate: float, subject_mass: float,
+                    tolerance: float = 0.05, window: float = 0.5) -> MassCheck:
+    """Compare the quietest stretch of the total vertical force with the subject's weight.
+
+    Parameters
+    ----------
+    vertical
+        Total vertical ground reaction [N], shape (n,), while nothing is carried.
+    rate
+        Samples per second [Hz].
+    subject_mass
+        kg.
+    tolerance
+        Accepted relative deviation: 5 % (requirement of the project).
+    window
+        Length of the stretch [s]; the one with the smallest variance is taken.
+
+    Raises
+    ------
+    ForcePlateError
+        If the recording is shorter than the window or not finite.
+    """
+    fz = np.asarray(vertical, dtype=np.float64)
+    length = max(2, int(round(window * rate)))
+    if fz.ndim != 1 or fz.size < length:
+        raise ForcePlateError(f'vertical force: {fz.size} samples are fewer than the {length} of '
+                              f'a window of {window} s')
+    if not np.all(np.isfinite(fz)):
+        raise ForcePlateError('vertical force: not finite')
+    windows = np.lib.stride_tricks.sliding_window_view(fz, length)
+    quiet = windows[int(np.argmin(windows.var(axis=1)))]
+    mass = float(quiet.mean()) / STANDARD_GRAVITY
+    return MassCheck(mass, subject_mass, mass / subject_mass - 1.0, tolerance, length)
