@@ -101,9 +101,9 @@ class BagWriter:
         self._stack.__exit__(kind, error, trace)
 
     def topic(self, name: str, msgtype: str, *, transient_local: bool = False) -> None:
-        """Announce a topic."""
+        """Announce a topic by its relative name; the bag holds it in the root namespace."""
         connection = self._writer.add_connection(
-            name,
+            f'/{name}',
             msgtype,
             typestore=self.types,
             offered_qos_profiles=[quality(transient_local=transient_local)],

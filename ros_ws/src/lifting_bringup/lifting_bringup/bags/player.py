@@ -1,0 +1,410 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""`lift play`: publish a bag in its own time, at a rate, without losing a message.
+
+Serialised messages are forwarded as they are. A message that is late is sent at once; none is
+dropped: streams are reliable and keep all, so a subscriber that cannot follow slows the player.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import rclpy
+from rclpy.duration import Duration
+from rclpy.experimental import EventsExecutor
+from rclpy.impl.implementation_singleton import rclpy_implementation
+from rclpy.node import Node
+from rosbags.interfaces import QosDurability
+from rosgraph_msgs.msg import Clock
+from std_srvs.srv import SetBool
+
+from lifting_bringup.bags.exceptions import PlaybackError
+from lifting_bringup.bags.qos import message_class, publisher_profile
+from lifting_bringup.bags.reader import BagLoss, BagReader, BagTopic
+
+# Alarms in a bag are history: played again they would raise the plant's alarms a second time.
+HISTORY_TYPES = ('lifting_interfaces/msg/AlarmEvent',)
+_CLOCK_TOPIC = '/clock'
+_EARLY_NS = 100_000
+_POLL_SECONDS = 0.02
+
+
+@dataclass(frozen=True)
+class PlayOptions:
+    """What to play and how.
+
+    Attributes
+    ----------
+    bag : Path
+        Any rosbag2 bag.
+    rate : float
+        Bag seconds per second.
+    loop : int
+        How often to play; 0: until stopped.
+    start : float
+        Offset into the bag [s]. The last transient-local messages before it are still sent.
+    namespace : str
+        Prefix of all topics and of the node.
+    topics : tuple of str
+        Topics to play (as stored, the leading slash may be left out); empty: all.
+    clock_hz : float
+        `/clock` messages per second of wall time; 0: none.
+    start_paused : bool
+        Wait for resume.
+    wait_for : Mapping of str to int
+        Topic to number of subscribers to wait for.
+    wait_timeout : float
+        [s] for the above.
+    ack_timeout : float
+        [s] to wait at the end for the subscribers' acknowledgements, and in the middle for one
+        that has stopped taking messages.
+    play_alarms : bool
+        Also play stored alarms.
+    """
+
+    bag: Path
+    rate: float = 1.0
+    loop: int = 1
+    start: float = 0.0
+    namespace: str = ''
+    topics: tuple[str, ...] = ()
+    clock_hz: float = 100.0
+    start_paused: bool = False
+    wait_for: Mapping[str, int] = field(default_factory=dict)
+    wait_timeout: float = 20.0
+    ack_timeout: float = 30.0
+    play_alarms: bool = False
+
+    def __post_init__(self) -> None:
+        """Refuse impossible numbers."""
+        if not self.rate > 0.0:
+            raise PlaybackError(f'option rate: {self.rate} is not positive')
+        if self.loop < 0:
+            raise PlaybackError(f'option loop: {self.loop} is negative')
+        if self.start < 0.0:
+            raise PlaybackError(f'option start: {self.start} s is negative')
+
+
+@dataclass(frozen=True)
+class PlayReport:
+    """What was played.
+
+    Attributes
+    ----------
+    messages : dict
+        Messages per topic, over all loops.
+    skipped : dict
+        Topic to reason.
+    loss : BagLoss or None
+        What was missing in the bag.
+    lateness_p50, lateness_p99, lateness_max : float
+        How much later than due messages were handed to the middleware [s].
+    wall_time : float
+        [s], pauses included.
+    acknowledged : bool
+        Every subscriber has acknowledged every message.
+    stopped : bool
+        The control stopped it before the end.
+    """
+
+    messages: dict[str, int]
+    skipped: dict[str, str]
+    loss: BagLoss | None
+    lateness_p50: float
+    lateness_p99: float
+    lateness_max: float
+    wall_time: float
+    acknowledged: bool
+    stopped: bool
+
+
+class PlayControl:
+    """Pause, resume and stop from another thread or from a service.
+
+    Parameters
+    ----------
+    paused : bool
+        State to begin with.
+    """
+
+    def __init__(self, *, paused: bool = False) -> None:
+        self._paused = threading.Event()
+        self._stopped = threading.Event()
+        if paused:
+            self._paused.set()
+        self.position = 0.0
+        """Bag time since the start of the bag [s]."""
+
+    @property
+    def paused(self) -> bool:
+        """Whether playing is paused."""
+        return self._paused.is_set()
+
+    @property
+    def stopped(self) -> bool:
+        """Whether playing is to end."""
+        return self._stopped.is_set()
+
+    def pause(self, value: bool = True) -> None:
+        """Pause (True) or resume (False)."""
+        if value:
+            self._paused.set()
+        else:
+            self._paused.clear()
+
+    def toggle(self) -> None:
+        """Pause if playing, resume if paused."""
+        self.pause(not self.paused)
+
+    def stop(self) -> None:
+        """End playing."""
+        self._stopped.set()
+
+
+def play(
+    options: PlayOptions,
+    control: PlayControl | None = None,
+    say: Callable[[str], None] = lambda text: None,
+) -> PlayReport:
+    """Play a bag to its end.
+
+    Parameters
+    ----------
+    options : PlayOptions
+        What and how.
+    control : PlayControl, optional
+        To pause and stop from elsewhere; the service `~/pause` (std_srvs/SetBool) works on it.
+    say : callable, optional
+        Receives one line per remarkable event (lost data, skipped topics).
+
+    Raises
+    ------
+    UnreadableBagError
+        The bag.
+    PlaybackError
+        Nothing to play, expected subscribers missing, or a subscriber that takes nothing more.
+    """
+    control = control or PlayControl(paused=options.start_paused)
+    with BagReader(options.bag) as bag:
+        context = rclpy.Context()
+        context.init()
+        try:
+            node = Node('player', context=context, namespace=options.namespace)
+            try:
+                return _Playback(options, control, say, bag, node).run()
+            finally:
+                node.destroy_node()
+        finally:
+            context.try_shutdown()
+
+
+class _Playback:
+    """One run of the player on an open bag and a node."""
+
+    def __init__(
+        self,
+        options: PlayOptions,
+        control: PlayControl,
+        say: Callable[[str], None],
+        bag: BagReader,
+        node: Node,
+    ) -> None:
+        self._options, self._control, self._bag, self._node = options, control, bag, node
+        self._skipped: dict[str, str] = {}
+        if bag.loss is not None:
+            say(f'{bag.path}: {bag.loss}')
+        self._publishers = self._make_publishers(say)
+        if not self._publishers:
+            raise PlaybackError(f'{bag.path}: no topic to play: {self._skipped}')
+        self._counts = dict.fromkeys(self._publishers, 0)
+        self._lateness: list[int] = []
+        self._clock = (
+            node.create_publisher(Clock, _CLOCK_TOPIC, 10) if options.clock_hz > 0.0 else None
+        )
+        node.create_service(SetBool, '~/pause', self._on_pause)
+        self._executor = EventsExecutor(context=node.context)
+        self._executor.add_node(node)
+
+    def _make_publishers(self, say: Callable[[str], None]) -> dict[str, Any]:
+        wanted = {'/' + name.lstrip('/') for name in self._options.topics}
+        stored = {'/' + name.lstrip('/') for name in self._bag.topics}
+        if wanted - stored:
+            raise PlaybackError(f'{self._bag.path}: has no topic {sorted(wanted - stored)}')
+        publishers = {}
+        for name, topic in self._bag.topics.items():
+            full = '/' + name.lstrip('/')
+            if wanted and full not in wanted:
+                continue
+            reason = self._reason_to_skip(full, topic)
+            if reason:
+                self._skipped[name] = reason
+                say(f'{name} is not played: {reason}')
+                continue
+            publishers[name] = self._node.create_publisher(
+                message_class(topic.msgtype),
+                self._resolve(full),
+                publisher_profile(topic.qos),
+            )
+        return publishers
+
+    def _reason_to_skip(self, full: str, topic: BagTopic) -> str:
+        if topic.count == 0:
+            return 'holds no messages'
+        if full == _CLOCK_TOPIC and self._options.clock_hz > 0.0:
+            return 'the player publishes its own clock'
+        if topic.msgtype in HISTORY_TYPES and not self._options.play_alarms:
+            return 'alarms of stored data are not raised again'
+        if message_class(topic.msgtype) is None:
+            return f'message type {topic.msgtype} is not installed'
+        return ''
+
+    def _resolve(self, full: str) -> str:
+        prefix = self._options.namespace.strip('/')
+        return f'/{prefix}{full}' if prefix else full
+
+    def _on_pause(self, request: Any, response: Any) -> Any:
+        self._control.pause(request.data)
+        response.success = True
+        response.message = 'paused' if request.data else 'playing'
+        return response
+
+    def run(self) -> PlayReport:
+        """Wait for subscribers, play all loops, wait for the acknowledgements."""
+        self._wait_for_subscribers()
+        begin = time.monotonic()
+        messages = self._load()
+        done = 0
+        while not self._control.stopped and (self._options.loop == 0 or done < self._options.loop):
+            self._play_once(messages)
+            done += 1
+        acknowledged = all(
+            p.wait_for_all_acked(Duration(seconds=self._options.ack_timeout))
+            for p in self._publishers.values()
+        )
+        late = np.array(self._lateness or [0]) * 1e-9
+        self._executor.shutdown()
+        return PlayReport(
+            messages=dict(self._counts),
+            skipped=self._skipped,
+            loss=self._bag.loss,
+            lateness_p50=float(np.percentile(late, 50)),
+            lateness_p99=float(np.percentile(late, 99)),
+            lateness_max=float(late.max()),
+            wall_time=time.monotonic() - begin,
+            acknowledged=acknowledged,
+            stopped=self._control.stopped,
+        )
+
+    def _wait_for_subscribers(self) -> None:
+        end = time.monotonic() + self._options.wait_timeout
+        wanted = {'/' + k.lstrip('/'): n for k, n in self._options.wait_for.items()}
+        played = {'/' + name.lstrip('/'): p for name, p in self._publishers.items()}
+        for name in wanted:
+            if name not in played:
+                raise PlaybackError(f'option wait_for: topic {name} is not played')
+        while not self._control.stopped:
+            missing = {
+                name: f'{played[name].get_subscription_count()} of {number}'
+                for name, number in wanted.items()
+                if played[name].get_subscription_count() < number
+            }
+            if not missing:
+                return
+            if time.monotonic() > end:
+                raise PlaybackError(
+                    f'subscribers missing after {self._options.wait_timeout:g} s: {missing}'
+                )
+            self._executor.spin_once(timeout_sec=_POLL_SECONDS)
+
+    def _load(self) -> list[tuple[str, int, bytes]]:
+        """Return latched messages from before the start, then all from the start on."""
+        start = self._bag.start_ns + round(self._options.start * 1e9)
+        topics = list(self._publishers)
+        latched = [
+            name
+            for name in topics
+            if (qos := self._bag.topics[name].qos)
+            and all(q.durability == QosDurability.TRANSIENT_LOCAL for q in qos)
+        ]
+        before: dict[str, tuple[str, int, bytes]] = {}
+        for name, stamp, data in self._bag.raw_messages(latched):
+            if stamp >= start:
+                break
+            before[name] = (name, start, data)
+        body = list(self._bag.raw_messages(topics, start))
+        if not body:
+            raise PlaybackError(
+                f'{self._bag.path}: no message after {self._options.start:g} s '
+                f'(the bag is {(self._bag.end_ns - self._bag.start_ns) * 1e-9:g} s long)'
+            )
+        return [*before.values(), *body]
+
+    def _play_once(self, messages: list[tuple[str, int, bytes]]) -> None:
+        control, rate = self._control, self._options.rate
+        bag_start = self._bag.start_ns
+        publishers, counts, lateness = self._publishers, self._counts, self._lateness
+        now = time.monotonic_ns
+        first = messages[0][1]
+        tick = round(1e9 / self._options.clock_hz) if self._clock else 10_000_000
+        epoch = next_tick = now()
+        for name, stamp, data in messages:
+            due = epoch + int((stamp - first) / rate)
+            while True:
+                clock = now()
+                if clock >= next_tick:
+                    next_tick = max(next_tick + tick, clock)
+                    self._tick(first + int((min(clock, due) - epoch) * rate))
+                    if control.stopped:
+                        return
+                    if control.paused:
+                        waited = self._wait_while_paused()
+                        epoch, due = epoch + waited, due + waited
+                        continue
+                ahead = due - clock
+                if ahead <= _EARLY_NS:
+                    break
+                time.sleep(min(ahead, max(next_tick - clock, 0) + 1) * 1e-9)
+            self._publish(publishers[name], name, data)
+            counts[name] += 1
+            lateness.append(max(0, now() - due))
+            control.position = (stamp - bag_start) * 1e-9
+        self._tick(messages[-1][1])
+
+    def _publish(self, publisher: Any, name: str, data: bytes) -> None:
+        """Publish; when a subscriber's history is full, wait for it instead of dropping."""
+        try:
+            publisher.publish(data)
+            return
+        except rclpy_implementation.RCLError:
+            end = time.monotonic() + self._options.ack_timeout
+        while not self._control.stopped:
+            try:
+                publisher.publish(data)
+                return
+            except rclpy_implementation.RCLError as error:
+                if time.monotonic() > end:
+                    raise PlaybackError(
+                        f'{name}: a subscriber has taken no message for '
+                        f'{self._options.ack_timeout:g} s'
+                    ) from error
+                time.sleep(_POLL_SECONDS)
+
+    def _tick(self, bag_ns: int) -> None:
+        if self._clock is not None:
+            message = Clock()
+            message.clock.sec, message.clock.nanosec = divmod(bag_ns, 1_000_000_000)
+            self._clock.publish(message)
+        self._executor.spin_once(timeout_sec=0.0)
+
+    def _wait_while_paused(self) -> int:
+        begin = time.monotonic_ns()
+        while self._control.paused and not self._control.stopped:
+            self._executor.spin_once(timeout_sec=_POLL_SECONDS)
+        return time.monotonic_ns() - begin
