@@ -68,5 +68,5 @@ def test_damaged_tables_are_refused_by_name(text, match):
 
 def test_a_cell_that_is_no_number_is_named():
     rows = parse_table('t.csv', 'a,source\nx,s\n', ['a'])
-    with pytest.raises(DataFileError, match="a of .* = 'x'"):
+    with pytest.raises(DataFileError, match=r"a of .* = 'x'"):
         number('t.csv', rows[0], 'a')

@@ -271,6 +271,19 @@ def test_torque_index_alarm_names_the_joint():
     assert raised.margin == pytest.approx(-0.125)
 
 
+def test_a_joint_without_published_strength_raises_nothing():
+    target = monitor()
+    unknown = [math.nan, math.nan]
+    for k in range(20):
+        assert target.update_joint_torques(k / RATE, ('wrist', 'neck'), [500.0, 500.0], unknown,
+                                           unknown, True) == []
+    assert target.counts['joint_torques'].unsolved == 20
+    for k in range(20, 40):
+        assert target.update_joint_torques(k / RATE, ('wrist', 'hip'), [500.0, 10.0],
+                                           [math.nan, -20.0], [math.nan, 20.0], True) == []
+    assert target.counts['joint_torques'].used == 20
+
+
 def test_activation_alarm_needs_a_hold():
     target = monitor()
     events = []

@@ -49,3 +49,14 @@ def test_peaks_leave_out_unsolved_samples():
     np.testing.assert_allclose(peaks.time, [10.2, 10.0])
     nothing = torque_index_peaks(time, ('hip', 'knee'), torque, lower, upper, np.zeros(3, bool))
     assert nothing.worst()[0] == '' and np.all(np.isnan(nothing.peak))
+
+
+def test_a_joint_without_published_strength_is_left_out():
+    time = np.array([0.0, 0.1])
+    torque = np.array([[10.0, 90.0], [20.0, 90.0]])
+    lower = np.array([[-40.0, np.nan]] * 2)
+    upper = np.array([[40.0, np.nan]] * 2)
+    peaks = torque_index_peaks(time, ('hip', 'wrist'), torque, lower, upper, np.ones(2, bool))
+    np.testing.assert_allclose(peaks.peak, [0.5, np.nan])
+    np.testing.assert_allclose(peaks.time, [0.1, np.nan])
+    assert peaks.worst()[0] == 'hip'

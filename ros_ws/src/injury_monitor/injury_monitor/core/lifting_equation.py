@@ -184,10 +184,8 @@ def lifting_equation(task: LiftingTask, load: float) -> LiftingEquation:
         frequency_multiplier(task.lifts_per_minute, task.duration_hours, task.vertical),
         coupling_multiplier(task.coupling, task.vertical))
     limit = LOAD_CONSTANT * math.prod(multipliers)
-    if limit > 0.0:
-        index = mass / limit
-    else:
-        index = math.inf if mass > 0.0 else 0.0
+    without_limit = math.inf if mass > 0.0 else 0.0
+    index = mass / limit if limit > 0.0 else without_limit
     smallest = min(multipliers)
     limiting = MULTIPLIERS[multipliers.index(smallest)] if smallest < 1.0 else ''
     return LiftingEquation(task, multipliers, limit, index, limiting)

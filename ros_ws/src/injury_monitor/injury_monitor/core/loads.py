@@ -26,12 +26,13 @@ def _series(owner: object, time: FloatArray, solved: BoolArray) -> None:
     object.__setattr__(owner, 'solved', np.asarray(solved, dtype=bool))
 
 
-def _column(owner: object, field: str, shape: tuple[int, ...], solved: BoolArray) -> None:
+def _column(owner: object, field: str, shape: tuple[int, ...], solved: BoolArray,
+            may_be_unknown: bool = False) -> None:
     """Check the shape of a field and that solved rows are finite."""
     name = f'{type(owner).__name__}.{field}'
     values = array(name, getattr(owner, field), shape)
     good = values[np.asarray(solved, dtype=bool)]
-    if not np.all(np.isfinite(good)):
+    if not may_be_unknown and not np.all(np.isfinite(good)):
         raise InvalidInputError(name, 'NaN', 'must be finite in every solved sample')
     object.__setattr__(owner, field, values)
 
@@ -46,7 +47,7 @@ class TorqueSeries:
         [s].
     joints : tuple of n_j names
     torque, lower, upper : arrays (n, n_j)
-        [N m].
+        [N m]; bounds are NaN where no strength is published for a joint.
     solved : array of bool (n,)
     """
 
@@ -61,7 +62,8 @@ class TorqueSeries:
         """Refuse wrong shapes and NaN in solved samples."""
         _series(self, self.time, self.solved)
         for field in ('torque', 'lower', 'upper'):
-            _column(self, field, (len(self.time), len(self.joints)), self.solved)
+            _column(self, field, (len(self.time), len(self.joints)), self.solved,
+                    may_be_unknown=field != 'torque')
 
 
 @dataclass(frozen=True)

@@ -162,15 +162,19 @@ class InjuryMonitor:
     def update_joint_torques(self, stamp: float, joints: Sequence[str], torque: npt.ArrayLike,
                              lower: npt.ArrayLike, upper: npt.ArrayLike, solved: bool,
                              lift_id: str = '', historical: bool = False) -> list[AlarmEvent]:
-        """Take one live sample of the joint torques and their dynamic limits [N m], (n_j,)."""
+        """Take one live sample of the joint torques and their dynamic limits [N m], (n_j,).
+
+        A joint whose limits are NaN (no published strength) is left out.
+        """
         shape = (len(joints),)
         values = [array(field, value, shape) for field, value in
                   (('torque', torque), ('lower', lower), ('upper', upper))]
-        good = solved and len(joints) > 0 and all(np.all(np.isfinite(v)) for v in values)
-        if not self._admit('joint_torques', stamp, bool(good), _QUANTITIES[2:3]):
+        good = solved and bool(np.all(np.isfinite(values[0])))
+        index = torque_index(*values) if good else np.empty(0)
+        good = good and not bool(np.all(np.isnan(index)))
+        if not self._admit('joint_torques', stamp, good, _QUANTITIES[2:3]):
             return []
-        index = torque_index(*values)
-        k = int(np.argmax(index))
+        k = int(np.nanargmax(index))
         return self._drive('joint_torque_index', Sample(stamp, float(index[k]), lift_id,
                                                         joints[k], historical))
 

@@ -25,33 +25,33 @@ def torque_index(torque: FloatArray, lower: FloatArray, upper: FloatArray) -> Fl
         Joint torque [N m].
     lower, upper : arrays of the same shape
         Dynamic joint strength in the negative (lower <= 0) and positive (upper >= 0) direction
-        [N m].
+        [N m]; NaN where no strength is published for a joint.
 
     Returns
     -------
     array
-        The index; infinite where a torque meets no strength at all.
+        The index; infinite where a torque meets no strength at all, NaN where the strength is
+        not known.
 
     Raises
     ------
     InvalidInputError
-        If the shapes differ, a lower bound is positive or an upper bound negative, or a value is
-        not finite.
+        If the shapes differ, a lower bound is positive or an upper bound negative, or a torque
+        is not finite.
     """
     tau = np.asarray(torque, dtype=np.float64)
     low = array('lower', lower, tau.shape)
     high = array('upper', upper, tau.shape)
-    for field, values in (('torque', tau), ('lower', low), ('upper', high)):
-        if not np.all(np.isfinite(values)):
-            raise InvalidInputError(field, values[~np.isfinite(values)][0], 'must be finite')
+    if not np.all(np.isfinite(tau)):
+        raise InvalidInputError('torque', float(tau[~np.isfinite(tau)][0]), 'must be finite')
     if np.any(low > 0.0):
-        raise InvalidInputError('lower', float(low.max()), 'must not be positive')
+        raise InvalidInputError('lower', float(np.nanmax(low)), 'must not be positive')
     if np.any(high < 0.0):
-        raise InvalidInputError('upper', float(high.min()), 'must not be negative')
+        raise InvalidInputError('upper', float(np.nanmin(high)), 'must not be negative')
     strength = np.where(tau > 0.0, high, low)
     index = np.full(tau.shape, np.inf)
     np.divide(tau, strength, out=index, where=strength != 0.0)
-    index[tau == 0.0] = 0.0
+    index[(tau == 0.0) & ~np.isnan(strength)] = 0.0
     return index
 
 
@@ -63,7 +63,7 @@ class TorqueIndexPeaks:
     ----------
     joints : tuple of str
     peak : array (n_joints,)
-        NaN where no sample was solved.
+        NaN where no sample was solved or the joint's strength is not known.
     time : array (n_joints,)
         Time of the peak [s], on the clock of the samples; NaN where there is no peak.
     """
@@ -103,6 +103,8 @@ def torque_index_peaks(time: FloatArray, joints: Sequence[str], torque: FloatArr
     if not np.any(solved):
         return TorqueIndexPeaks(tuple(joints), nothing, nothing.copy())
     index = torque_index(tau[solved], low[solved], high[solved])
-    rows = np.argmax(index, axis=0)
+    known = ~np.all(np.isnan(index), axis=0)
+    rows = np.argmax(np.where(np.isnan(index), -np.inf, index), axis=0)
     peak = index[rows, np.arange(len(joints))]
-    return TorqueIndexPeaks(tuple(joints), peak, np.asarray(time)[solved][rows])
+    when = np.where(known, np.asarray(time)[solved][rows], np.nan)
+    return TorqueIndexPeaks(tuple(joints), peak, when)

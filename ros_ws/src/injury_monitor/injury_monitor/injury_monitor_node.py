@@ -1,0 +1,240 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Lifecycle node round the injury monitor: live loads in, alarms and assessments out."""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import Any
+
+from lifting_interfaces.msg import (
+    AlarmEvent,
+    BodyMotion,
+    JointTorques,
+    MeasuredLift,
+    MuscleAnalysis,
+    PredictedLift,
+    RiskAssessment,
+    SpineLoad,
+    Subject,
+    Task,
+)
+from lifting_interfaces.srv import AcknowledgeAlarm, ResetAlarm, ShelveAlarm
+from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
+
+from injury_monitor import conversions
+from injury_monitor.core import alarm_event
+from injury_monitor.core.alarm import Trigger
+from injury_monitor.core.exceptions import (
+    AlarmCommandError,
+    InjuryMonitorError,
+    ShelveDurationError,
+    UnknownAlarmError,
+)
+from injury_monitor.core.journal import AlarmJournal
+from injury_monitor.core.lift_parts import MEASURED, PREDICTED, LiftCollector, LiftParts
+from injury_monitor.core.monitor import InjuryMonitor
+from lifting_node import qos
+from lifting_node.pipeline_node import PipelineNode
+from lifting_node.run import run_node
+from lifting_node.stamps import to_seconds
+
+
+class InjuryMonitorNode(PipelineNode):
+    """Alarms and assessments of one station; the namespace is the station."""
+
+    PACKAGE = 'injury_monitor'
+    INPUT_ERRORS = (InjuryMonitorError,)
+
+    def build(self) -> None:
+        """Create the monitor, its publishers, subscriptions and services."""
+        self._journal = AlarmJournal(self.values['journal']) if self.values['journal'] else None
+        if self._journal is not None and self._journal.damaged_lines:
+            self.get_logger().warning(
+                f'{self._journal.path}: lines {self._journal.damaged_lines} cannot be read')
+        self.monitor = InjuryMonitor(
+            self.get_namespace().strip('/') or 'station', max_gap=self.values['max_gap'],
+            activation_window=self.values['activation_window'],
+            max_shelve=self.values['max_shelve'],
+            known=self._journal.known() if self._journal is not None else ())
+        self._collector = LiftCollector(self.values['result_wait'])
+        self._subject: Subject | None = None
+        self._task: Task | None = None
+        self._filter_delay = math.nan
+        self._alarms = self.advertise(AlarmEvent, 'alarms', qos.RESULTS)
+        self._assessments = self.advertise(RiskAssessment, 'risk_assessment', qos.RESULTS)
+        self.subscribe(Subject, 'subject', self._on_subject, qos.LATCHED)
+        self.subscribe(Task, 'task', self._on_task, qos.LATCHED)
+        self.subscribe(BodyMotion, 'body_motion', self._on_body_motion, qos.FRAMES)
+        self.subscribe(SpineLoad, 'spine_load', self._on_spine_load, qos.FRAMES)
+        self.subscribe(JointTorques, 'joint_torques', self._on_joint_torques, qos.FRAMES)
+        self.subscribe(MuscleAnalysis, 'muscle_analysis', self._on_muscle_analysis, qos.FRAMES)
+        self.subscribe(MeasuredLift, 'measured_lift', self._on_measured_lift, qos.RESULTS)
+        self.subscribe(PredictedLift, 'predicted_lift', self._on_predicted_lift, qos.RESULTS)
+        self._operator_services = [
+            self.create_service(AcknowledgeAlarm, '~/acknowledge_alarm', self._acknowledge),
+            self.create_service(ResetAlarm, '~/reset_alarm', self._reset),
+            self.create_service(ShelveAlarm, '~/shelve_alarm', self._shelve)]
+        self._deadline = self.create_timer(1.0, self._assess_ready)
+
+    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Drop the services and the timer with the rest."""
+        for service in self._operator_services:
+            self.destroy_service(service)
+        self.destroy_timer(self._deadline)
+        return super().on_cleanup(state)
+
+    def _on_subject(self, message: Subject) -> None:
+        self._subject = message
+        self._configure()
+
+    def _on_task(self, message: Task) -> None:
+        self._task = message
+        self._configure()
+
+    def _configure(self) -> None:
+        if self._subject is None or self._task is None:
+            return
+        limits = self.monitor.configure(conversions.work_from_msg(self._subject, self._task))
+        self.get_logger().info(
+            f'limits: compression {limits.compression_action.value:g} and '
+            f'{limits.compression_maximum.value:g} N, anterior shear {limits.shear.value:g} N '
+            f'({limits.loads_per_day:g} loads a day)')
+
+    def _on_body_motion(self, message: BodyMotion) -> None:
+        self._filter_delay = message.filter_delay
+
+    def _on_spine_load(self, message: SpineLoad) -> None:
+        source = conversions.lift_source(message)
+        series = conversions.spine_from_msg(message)
+        if source:
+            self._collect(message.lift_id, lambda parts: parts.spine.update({source: series}))
+        elif self._ready_for_samples():
+            for row in zip(series.time, series.compression, series.anterior_shear, series.solved,
+                           strict=True):
+                self._announce(self.monitor.update_spine_load(
+                    *(float(value) for value in row[:3]), bool(row[3]), message.lift_id,
+                    self.values['stored_data']))
+
+    def _on_joint_torques(self, message: JointTorques) -> None:
+        source = conversions.lift_source(message)
+        series = conversions.torques_from_msg(message)
+        if source:
+            self._collect(message.lift_id, lambda parts: parts.torques.update({source: series}))
+        elif self._ready_for_samples():
+            for k, stamp in enumerate(series.time):
+                self._announce(self.monitor.update_joint_torques(
+                    float(stamp), series.joints, series.torque[k], series.lower[k],
+                    series.upper[k], bool(series.solved[k]), message.lift_id,
+                    self.values['stored_data']))
+
+    def _on_muscle_analysis(self, message: MuscleAnalysis) -> None:
+        source = conversions.lift_source(message)
+        series = conversions.activations_from_msg(message)
+        if source:
+            self._collect(message.lift_id,
+                          lambda parts: parts.activations.update({source: series}))
+        elif self._ready_for_samples():
+            for k, stamp in enumerate(series.time):
+                self._announce(self.monitor.update_activations(
+                    float(stamp), series.muscles, series.activation[k], bool(series.solved[k]),
+                    message.lift_id, self.values['stored_data']))
+
+    def _on_measured_lift(self, message: MeasuredLift) -> None:
+        ends = conversions.ends_from_msg(message)
+        start = to_seconds(message.header.stamp)
+
+        def take(parts: LiftParts) -> None:
+            parts.start, parts.ends = start, ends
+
+        self._collect(message.lift_id, take)
+
+    def _on_predicted_lift(self, message: PredictedLift) -> None:
+        if message.report.status != 0:
+            reason = f'prediction failed: {message.report.message}'
+
+            def take(parts: LiftParts) -> None:
+                parts.no_prediction = reason
+
+            self._collect(message.lift_id, take)
+
+    def _ready_for_samples(self) -> bool:
+        """Return whether live samples can be judged; count those that come too early."""
+        if self.active and self.monitor.work is not None:
+            return True
+        self.counts['samples before person and task or while not active'] += 1
+        return False
+
+    def _collect(self, lift_id: str, take: Any) -> None:
+        parts = self._collector.parts(lift_id, time.monotonic())
+        if parts is None:
+            self.counts['late parts of assessed lifts'] += 1
+            return
+        take(parts)
+        self._assess_ready()
+
+    def _assess_ready(self) -> None:
+        if not self.active or self.monitor.work is None:
+            return
+        for parts in self._collector.ready(time.monotonic()):
+            try:
+                self._assess(parts)
+            except InjuryMonitorError as error:
+                self.report_error(f'{parts.lift_id} not assessed: {error}')
+
+    def _assess(self, parts: LiftParts) -> None:
+        measured = parts.loads(MEASURED)
+        if measured is None:
+            self.report_error(f'{parts.lift_id} not assessed: no measured spine load came within '
+                              f'{self._collector.wait:g} s')
+            return
+        if parts.no_prediction:
+            self.get_logger().warning(f'{parts.lift_id}: {parts.no_prediction}')
+        result = self.monitor.assess(measured, parts.loads(PREDICTED), parts.ends)
+        self._assessments.publish(conversions.assessment_to_msg(result, measured.start))
+
+    def _announce(self, events: list[alarm_event.AlarmEvent]) -> None:
+        if not events:
+            return
+        if self._journal is not None:
+            self._journal.append(events)
+        for event in events:
+            self.get_logger().warning(event.message())
+            self._alarms.publish(conversions.alarm_to_msg(event, self._filter_delay))
+
+    def _acknowledge(self, request: AcknowledgeAlarm.Request,
+                     response: AcknowledgeAlarm.Response) -> AcknowledgeAlarm.Response:
+        return self._command(Trigger.ACKNOWLEDGE, request, response)
+
+    def _reset(self, request: ResetAlarm.Request,
+               response: ResetAlarm.Response) -> ResetAlarm.Response:
+        return self._command(Trigger.RESET, request, response)
+
+    def _shelve(self, request: ShelveAlarm.Request,
+                response: ShelveAlarm.Response) -> ShelveAlarm.Response:
+        return self._command(Trigger.SHELVE, request, response, request.duration)
+
+    def _command(self, trigger: Trigger, request: Any, response: Any,
+                 duration: float = math.nan) -> Any:
+        codes = {UnknownAlarmError: ShelveAlarm.Response.UNKNOWN_ALARM,
+                 AlarmCommandError: ShelveAlarm.Response.NOT_IN_THIS_STATE,
+                 ShelveDurationError: ShelveAlarm.Response.DURATION_REFUSED}
+        try:
+            events = self.monitor.command(trigger, request.alarm_id, request.operator,
+                                          duration=duration)
+        except tuple(codes) as error:
+            response.error_code = codes[type(error)]
+            response.error_message = str(error)
+            return response
+        self._announce(events)
+        return response
+
+
+def main(args: list[str] | None = None) -> None:
+    """Run the node."""
+    run_node(InjuryMonitorNode, args)
+
+
+if __name__ == '__main__':
+    main()
