@@ -1,0 +1,174 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Marker sets as data: which marker sits where on which segment, and how much it counts.
+
+A set is a CSV file in ``data/marker_sets``. Positions are in metres in the segment's anatomical
+frame (REP-103 axes in the neutral posture, origin in the proximal joint) for the reference
+subject below; for another person each axis is scaled with the length or the three lengths (x y z)
+that ``scale_with`` names. Rows without a position get theirs from a static trial only. ``weight``
+is the weight of the squared distance in the fit: bony landmarks count twice as much as markers
+over muscle. ``tracking`` is ``no`` for markers that are used in the static trial only.
+"""
+
+import csv
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+from human_model.anthropometry import segment_lengths
+from human_model.subject import Subject
+
+from motion_tracker.core.errors import MarkerSetError
+
+Array = npt.NDArray[np.float64]
+
+#: Person the positions of the marker sets belong to.
+REFERENCE_SUBJECT = Subject('reference', 'male', 75.0, 1.75, 30.0)
+
+DATA = Path(__file__).resolve().parent.parent / 'data'
+
+COLUMNS = ('marker', 'segment', 'x', 'y', 'z', 'scale_with', 'weight', 'tracking', 'description',
+           'source')
+
+
+@dataclass(frozen=True)
+class Marker:
+    """One row of a marker set.
+
+    Attributes
+    ----------
+    name, segment : str
+    position : tuple of 3 float or None
+        For the reference subject [m]; None when only a static trial gives it.
+    scale_with : tuple of 3 str
+        Lengths the axes scale with; empty strings without a position.
+    weight : float
+    tracking : bool
+    """
+
+    name: str
+    segment: str
+    position: tuple[float, float, float] | None
+    scale_with: tuple[str, str, str]
+    weight: float
+    tracking: bool
+
+
+@dataclass(frozen=True)
+class MarkerSet:
+    """A named set of markers.
+
+    Attributes
+    ----------
+    name : str
+    markers : tuple of Marker
+    """
+
+    name: str
+    markers: tuple[Marker, ...]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of all markers."""
+        return tuple(marker.name for marker in self.markers)
+
+    def marker(self, name: str) -> Marker:
+        """Marker by name."""
+        for marker in self.markers:
+            if marker.name == name:
+                return marker
+        raise MarkerSetError(f'marker set {self.name}: no marker named {name!r}')
+
+    def positions(self, lengths: Mapping[str, float]) -> dict[str, Array]:
+        """Positions (3,) [m] in the segments' frames, scaled to a person's segment lengths.
+
+        Markers without a position in the set are left out.
+        """
+        reference = _reference_lengths()
+        scaled = {}
+        for marker in self.markers:
+            if marker.position is None:
+                continue
+            ratio = [lengths[key] / reference[key] for key in marker.scale_with]
+            scaled[marker.name] = np.array(marker.position) * ratio
+        return scaled
+
+    def mirror(self, name: str) -> str | None:
+        """Name of the marker on the other side of the body that differs in the side only.
+
+        The side is a leading L or R, in either case, as in ``LKNE``, ``r_knee`` or ``L.ASIS``.
+        """
+        other = {'L': 'R', 'R': 'L'}.get(name[:1].upper())
+        if other is None:
+            return None
+        for candidate in (other + name[1:], other.lower() + name[1:]):
+            if candidate in self.names:
+                return candidate
+        return None
+
+
+def available() -> tuple[str, ...]:
+    """Names of the marker sets that come with the package."""
+    return tuple(sorted(path.stem for path in (DATA / 'marker_sets').glob('*.csv')))
+
+
+def load_marker_set(name: str | Path) -> MarkerSet:
+    """Read a marker set by its name, or from a CSV file of one's own.
+
+    Raises
+    ------
+    MarkerSetError
+        If the file does not exist, a column is missing, a value is not valid or a marker occurs
+        twice; the message names file, line and field.
+    """
+    path = Path(name) if str(name).endswith('.csv') else DATA / 'marker_sets' / f'{name}.csv'
+    if not path.is_file():
+        raise MarkerSetError(f'marker set {name!r}: no file {path.name}; there are '
+                             f'{", ".join(available())}')
+    with path.open(newline='', encoding='utf-8') as file:
+        reader = csv.DictReader(file)
+        missing = [column for column in COLUMNS if column not in (reader.fieldnames or [])]
+        if missing:
+            raise MarkerSetError(f'{path.name}: column {missing[0]!r} is missing')
+        markers = tuple(_parse(path.name, number, row) for number, row in enumerate(reader, 2))
+    names = [marker.name for marker in markers]
+    for marker in names:
+        if names.count(marker) > 1:
+            raise MarkerSetError(f'{path.name}: marker {marker!r} occurs {names.count(marker)} '
+                                 'times')
+    return MarkerSet(path.stem, markers)
+
+
+def _parse(file: str, line: int, row: Mapping[str, str]) -> Marker:
+    where = f'{file}, line {line}'
+    try:
+        numbers = [float(row[axis]) if row[axis] else np.nan for axis in 'xyz']
+        weight = float(row['weight'])
+    except ValueError as error:
+        raise MarkerSetError(f'{where}: {error}') from error
+    if not (np.isfinite(weight) and weight > 0):
+        raise MarkerSetError(f'{where}: weight {row["weight"]!r} is not positive')
+    if row['tracking'] not in ('yes', 'no'):
+        raise MarkerSetError(f'{where}: tracking {row["tracking"]!r} is neither yes nor no')
+    known = np.isfinite(numbers)
+    if known.any() and not known.all():
+        raise MarkerSetError(f'{where}: position of {row["marker"]!r} is incomplete')
+    scale = row['scale_with'].split()
+    if known.all() and len(scale) not in (1, 3):
+        raise MarkerSetError(f'{where}: scale_with {row["scale_with"]!r} names neither one nor '
+                             'three lengths')
+    for length in scale:
+        if length not in _reference_lengths():
+            raise MarkerSetError(f'{where}: scale_with {length!r} is no segment length')
+    names = (scale * 3)[:3] if scale else ['', '', '']
+    return Marker(row['marker'], row['segment'],
+                  (numbers[0], numbers[1], numbers[2]) if known.all() else None,
+                  (names[0], names[1], names[2]), weight, row['tracking'] == 'yes')
+
+
+@cache
+def _reference_lengths() -> dict[str, float]:
+    return segment_lengths(REFERENCE_SUBJECT)[0]
