@@ -23,7 +23,8 @@ setup(
     maintainer='The lift monitor authors',
     maintainer_email='maintainers@lift-monitor.example',
     description=(
-        'What the lifecycle nodes of the lift monitor share: parameters, quality of service, message conversion and diagnostics.'
+        'What the lifecycle nodes of the lift monitor share: parameters, quality of '
+        'service, message conversion and diagnostics.'
     ),
     license='Apache-2.0',
 )

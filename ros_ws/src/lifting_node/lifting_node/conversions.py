@@ -22,7 +22,7 @@ from lifting_node.stamps import to_seconds, to_stamp
 Array = npt.NDArray[np.float64]
 
 #: Frame of all Cartesian values: x forward, y left, z up, on the floor.
-LABORATORY = 'lab'
+LABORATORY = 'world'
 
 _SEX = {'male': SubjectMsg.SEX_MALE, 'female': SubjectMsg.SEX_FEMALE}
 _SEX_NAME = {code: name for name, code in _SEX.items()}

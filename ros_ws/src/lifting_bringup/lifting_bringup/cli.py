@@ -1,0 +1,211 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""The `lift` command: import, play, record, run, report, demo."""
+
+from __future__ import annotations
+
+import argparse
+import signal
+import sys
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from lifting_bringup.bags.exceptions import BagError
+from lifting_bringup.graph_errors import GraphError
+
+#: The recording that `lift demo` plays.
+DEMO_BAG = 'symmetric_12kg'
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; return the exit code."""
+    options = _parser().parse_args(arguments)
+    handler: Callable[[argparse.Namespace], int] = options.handler
+    try:
+        return handler(options)
+    except (BagError, GraphError) as error:
+        print(f'lift {options.command}: {error}', file=sys.stderr)
+        return 1
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog='lift', description='Watch, predict and assess lifts from recordings.'
+    )
+    commands = parser.add_subparsers(dest='command', required=True)
+
+    demo = commands.add_parser('demo', help='play a recorded lift through the whole graph')
+    demo.add_argument('--bags', type=Path, default=Path('bags'), help='folder of the recordings')
+    demo.add_argument('--output', type=Path, default=Path('out/demo'), help='where results go')
+    demo.set_defaults(handler=_demo)
+
+    run = commands.add_parser('run', help='run a recording through the graph and report')
+    run.add_argument('bag', type=Path, help='rosbag2 recording (MCAP or SQLite)')
+    run.add_argument('--output', type=Path, help='where results go (default: out/<name of bag>)')
+    run.add_argument('--rate', type=float, default=1.0, help='times real time')
+    run.add_argument('--station', default='station_1', help='namespace of the graph')
+    run.add_argument(
+        '--offline', action='store_true', help='same computation in this process, without ROS'
+    )
+    run.set_defaults(handler=_run)
+
+    play = commands.add_parser('play', help='play a recording')
+    play.add_argument('bag', type=Path)
+    play.add_argument('--rate', type=float, default=1.0, help='times real time')
+    play.add_argument('--loop', type=int, default=1, help='how often; 0: until stopped')
+    play.add_argument('--start', type=float, default=0.0, help='offset [s]')
+    play.add_argument('--station', default='', help='namespace of all topics')
+    play.add_argument('--start-paused', action='store_true', help='wait for ~/pause false')
+    play.set_defaults(handler=_play)
+
+    record = commands.add_parser('record', help='record running topics to MCAP')
+    record.add_argument('output', type=Path)
+    record.add_argument('--topics', nargs='+', default=(), help='topics (default: all)')
+    record.add_argument('--duration', type=float, help='end after so many seconds')
+    record.set_defaults(handler=_record)
+
+    convert = commands.add_parser('import', help='turn C3D or TRC + MOT/STO into a recording')
+    convert.add_argument('markers', type=Path, help='.c3d or .trc')
+    convert.add_argument('--forces', type=Path, help='.mot or .sto that belongs to a .trc')
+    convert.add_argument('--subject', type=Path, required=True, help='subject file (YAML)')
+    convert.add_argument('--static', type=Path, help='static trial for the calibration')
+    convert.add_argument('--output', type=Path, required=True, help='recording to create')
+    _add_conventions(convert)
+    convert.set_defaults(handler=_import)
+
+    report = commands.add_parser('report', help='write the report of a results file')
+    report.add_argument('results', type=Path, help='results.mcap of a run')
+    report.add_argument('--output', type=Path, help='HTML file (default: beside the results)')
+    report.set_defaults(handler=_report)
+    return parser
+
+
+def _demo(options: argparse.Namespace) -> int:
+    return _run(
+        argparse.Namespace(
+            bag=options.bags / DEMO_BAG,
+            output=options.output,
+            rate=1.0,
+            station='station_1',
+            offline=False,
+        )
+    )
+
+
+def _run(options: argparse.Namespace) -> int:
+    from lifting_bringup.results import write_report
+
+    output = options.output or Path('out') / options.bag.stem
+    if options.offline:
+        from lifting_bringup.offline import run_offline
+
+        results = run_offline(options.bag, output, options.station)
+    else:
+        from lifting_bringup.session import RunOptions, run_online
+
+        outcome = run_online(
+            RunOptions(options.bag, output, rate=options.rate, station=options.station)
+        )
+        results = outcome.results
+        print(f'ready to play after {outcome.time_to_play:.1f} s')
+    began = time.monotonic()
+    page = write_report(results, output / 'report.html')
+    print(f'results {results}')
+    print(f'report  {page} ({time.monotonic() - began:.1f} s)')
+    return 0
+
+
+def _play(options: argparse.Namespace) -> int:
+    from lifting_bringup.bags.player import PlayControl, PlayOptions, play
+
+    control = PlayControl(paused=options.start_paused)
+    signal.signal(signal.SIGTERM, lambda *_: control.stop())
+    signal.signal(signal.SIGINT, lambda *_: control.stop())
+    report = play(
+        PlayOptions(
+            options.bag,
+            rate=options.rate,
+            loop=options.loop,
+            start=options.start,
+            namespace=options.station,
+            start_paused=options.start_paused,
+        ),
+        control,
+        print,
+    )
+    total = sum(report.messages.values())
+    print(
+        f'{total} messages in {report.wall_time:.2f} s; late by {1e3 * report.lateness_p50:.2f} ms '
+        f'(median), {1e3 * report.lateness_p99:.2f} ms (p99)'
+    )
+    if not report.acknowledged:
+        print('some subscribers have not acknowledged all messages', file=sys.stderr)
+        return 1
+    return 0
+
+
+def _record(options: argparse.Namespace) -> int:
+    from lifting_bringup.bags.recorder import RecordControl, RecordOptions, record
+
+    control = RecordControl()
+    signal.signal(signal.SIGTERM, lambda *_: control.stop())
+    signal.signal(signal.SIGINT, lambda *_: control.stop())
+    report = record(
+        RecordOptions(options.output, topics=tuple(options.topics), duration=options.duration),
+        control,
+        print,
+    )
+    for topic, count in sorted(report.messages.items()):
+        print(f'{count:8d}  {topic}')
+    return 0
+
+
+def _add_conventions(parser: argparse.ArgumentParser) -> None:
+    group = parser.add_argument_group('conventions', 'what the recording itself does not settle')
+    group.add_argument('--units', choices=('m', 'cm', 'mm'))
+    group.add_argument('--vertical', metavar='AXIS', help='for example +y')
+    group.add_argument('--facing', metavar='AXIS', help='for example +x')
+    group.add_argument('--floor-height', type=float, default=0.0, help='[m]')
+    group.add_argument(
+        '--plate', action='append', default=[], metavar='NAME=SIDE', help='for example 1=right'
+    )
+
+
+def _import(options: argparse.Namespace) -> int:
+    from lifting_bringup.bags.alignment import ConventionOptions
+    from lifting_bringup.bags.importer import ImportOptions, import_recording
+
+    report = import_recording(
+        ImportOptions(
+            options.markers,
+            options.subject,
+            options.output,
+            forces=options.forces,
+            static=options.static,
+            conventions=ConventionOptions(
+                units=options.units,
+                vertical=options.vertical,
+                facing=options.facing,
+                floor_height=options.floor_height,
+                plates=dict(entry.split('=', 1) for entry in options.plate),
+            ),
+        )
+    )
+    for statement in report.statements:
+        print(statement)
+    total = sum(report.messages.values())
+    print(f'{report.bag}: {total} messages, {report.duration:.2f} s')
+    return 0
+
+
+def _report(options: argparse.Namespace) -> int:
+    from lifting_bringup.results import write_report
+
+    page = write_report(options.results, options.output or options.results.with_name('report.html'))
+    print(page)
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

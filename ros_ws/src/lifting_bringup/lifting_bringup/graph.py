@@ -1,0 +1,130 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""The running graph: its node processes and their lifecycle."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+from lifecycle_msgs.msg import Transition
+from lifecycle_msgs.srv import ChangeState
+from rclpy.client import Client
+from rclpy.executors import Executor
+from rclpy.node import Node
+
+from lifting_bringup.graph_errors import TransitionError
+from lifting_bringup.node_process import NODES, NodeProcess, start_module
+
+#: Time [s] a node has for one lifecycle transition; the first start compiles the models.
+TRANSITION_TIMEOUT = 300.0
+
+
+class Graph:
+    """Start, configure, activate and stop the four nodes of a station.
+
+    Parameters
+    ----------
+    node : Node
+        Node of this process, through which the lifecycle services are called.
+    executor : Executor
+        Executor that spins `node`.
+    station : str
+        Namespace of the station.
+    log_folder : Path
+        Where the nodes' output goes.
+    parameters : dict of dict, optional
+        Parameter overrides by node name.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        executor: Executor,
+        station: str,
+        log_folder: Path,
+        parameters: dict[str, dict[str, object]] | None = None,
+    ) -> None:
+        self._node = node
+        self._executor = executor
+        self._station = station
+        self._log_folder = log_folder
+        self._parameters = parameters or {}
+        self.processes: list[NodeProcess] = []
+
+    def __enter__(self) -> Self:
+        self.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.stop()
+
+    def start(self) -> None:
+        """Start all node processes; they load their models side by side."""
+        for name in NODES:
+            self.processes.append(
+                start_module(
+                    name,
+                    f'{name}.{name}_node',
+                    self._log_folder,
+                    self._station,
+                    parameters=self._parameters.get(name),
+                )
+            )
+
+    def bring_up(self) -> None:
+        """Configure and activate all nodes.
+
+        Raises
+        ------
+        TransitionError
+            If a node refuses or does not answer in time.
+        NodeDiedError
+            If a process ended.
+        """
+        self._transition_all(Transition.TRANSITION_CONFIGURE, 'configure')
+        self._transition_all(Transition.TRANSITION_ACTIVATE, 'activate')
+
+    def check(self) -> None:
+        """Raise NodeDiedError if a node process has ended."""
+        for process in self.processes:
+            process.check()
+
+    def stop(self) -> dict[str, int]:
+        """End all node processes; return their exit codes."""
+        codes = {process.name: process.stop() for process in self.processes}
+        self.processes.clear()
+        return codes
+
+    def _transition_all(self, transition: int, name: str) -> None:
+        deadline = time.monotonic() + TRANSITION_TIMEOUT
+        clients: dict[str, Client[Any, Any, Any]] = {
+            process.name: self._node.create_client(
+                ChangeState, f'/{self._station}/{process.name}/change_state'
+            )
+            for process in self.processes
+        }
+        futures: dict[str, Any] = {}
+        while len(futures) < len(clients) or not all(f.done() for f in futures.values()):
+            self.check()
+            for node_name, client in clients.items():
+                if node_name not in futures and client.service_is_ready():
+                    request = ChangeState.Request(transition=Transition(id=transition))
+                    futures[node_name] = client.call_async(request)
+            if time.monotonic() > deadline:
+                waiting = [n for n in clients if n not in futures or not futures[n].done()]
+                raise TransitionError(f'{name}: no answer from {", ".join(waiting)}')
+            self._executor.spin_once(timeout_sec=0.02)
+        for client in clients.values():
+            self._node.destroy_client(client)
+        refused = [n for n, future in futures.items() if not future.result().success]
+        if refused:
+            logs = ', '.join(str(p.log) for p in self.processes if p.name in refused)
+            raise TransitionError(f'{", ".join(refused)} refused to {name}; see {logs}')

@@ -1,0 +1,114 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""The node processes of the graph, started from the Python environment (no `launch` needed)."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from lifting_bringup.graph_errors import NodeDiedError
+
+#: Order of start: what computes longest before it is ready comes first.
+NODES = ('muscle_analyzer', 'lift_predictor', 'motion_tracker', 'injury_monitor')
+
+#: Time [s] a process has to end after SIGTERM before it is killed.
+STOP_TIMEOUT = 5.0
+
+
+@dataclass
+class NodeProcess:
+    """One running node process.
+
+    Parameters
+    ----------
+    name : str
+        Node name, equal to its package's name.
+    process : subprocess.Popen
+        The process.
+    log : Path
+        File that takes its standard output and error.
+    """
+
+    name: str
+    process: subprocess.Popen[bytes]
+    log: Path
+
+    def check(self) -> None:
+        """Raise NodeDiedError if the process has ended."""
+        code = self.process.poll()
+        if code is not None:
+            tail = self.log.read_text(encoding='utf-8', errors='replace')[-2000:]
+            raise NodeDiedError(f'{self.name} ended with exit code {code}; {self.log} ends:\n{tail}')
+
+    def stop(self) -> int:
+        """End the process, first gently; return its exit code."""
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGTERM)
+        try:
+            return self.process.wait(STOP_TIMEOUT)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            return self.process.wait()
+
+
+def environment() -> dict[str, str]:
+    """Return the environment of a node process.
+
+    Discovery stays on this machine unless the user has said otherwise: a worker's data do not leave the station by
+    default. Numerical libraries get one thread, as one frame's matrices are too small to share.
+    """
+    values = dict(os.environ)
+    values.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+    values.setdefault('OMP_NUM_THREADS', '1')
+    values.setdefault('OPENBLAS_NUM_THREADS', '1')
+    values['PYTHONUNBUFFERED'] = '1'
+    return values
+
+
+def start_module(
+    name: str,
+    module: str,
+    log_folder: Path,
+    station: str = '',
+    arguments: tuple[str, ...] = (),
+    parameters: dict[str, object] | None = None,
+) -> NodeProcess:
+    """Start a Python module as a process, in the namespace of a station if one is named.
+
+    Parameters
+    ----------
+    name : str
+        Name of the log file.
+    module : str
+        Module with a `main`, run as `python -m`.
+    log_folder : Path
+        Where its output goes.
+    station : str
+        Namespace, for example `station_1`.
+    arguments : tuple of str
+        Command line before `--ros-args`.
+    parameters : dict, optional
+        Parameter overrides.
+
+    Returns
+    -------
+    NodeProcess
+    """
+    log_folder.mkdir(parents=True, exist_ok=True)
+    log = log_folder / f'{name}.log'
+    command = [sys.executable, '-m', module, *arguments]
+    if station:
+        command += ['--ros-args', '-r', f'__ns:=/{station}']
+    for key, value in (parameters or {}).items():
+        text = str(value).lower() if isinstance(value, bool) else str(value)
+        command += ['-p', f'{key}:={text}']
+    with log.open('wb') as output:
+        process = subprocess.Popen(
+            command, stdout=output, stderr=subprocess.STDOUT, env=environment()
+        )
+    return NodeProcess(name, process, log)

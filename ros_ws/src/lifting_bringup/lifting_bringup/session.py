@@ -1,0 +1,290 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""`lift run`: one recording through the whole graph, each node a process, with a live view and a record of the results."""
+
+from __future__ import annotations
+
+import shutil
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import rclpy
+from injury_monitor.core.limits import limits_for
+from rclpy.executors import Executor
+from rclpy.experimental import EventsExecutor
+from rclpy.node import Node
+from std_srvs.srv import SetBool, Trigger
+
+from lifting_bringup.bags.reader import BagReader
+from lifting_bringup.graph import Graph
+from lifting_bringup.graph_errors import SessionError
+from lifting_bringup.live_state import FOLLOWED, Kind, Line, LiveState
+from lifting_bringup.live_view import LiveView
+from lifting_bringup.node_process import NodeProcess, start_module
+from lifting_node import qos
+
+#: Topics of the results file: the recording's description and everything the graph says of it.
+RESULT_TOPICS = (
+    'subject',
+    'task',
+    'joint_states',
+    'lift_event',
+    'measured_lift',
+    'predicted_lift',
+    'predicted_lift/joint_trajectory',
+    'lift_comparison',
+    'muscle_analysis',
+    'spine_load',
+    'l5_s1/reaction',
+    'joint_torques',
+    'risk_assessment',
+    'alarms',
+)
+
+#: Topics in that list that a graph may offer once a frame; the rest comes once a lift.
+_QOS = {
+    'subject': qos.LATCHED,
+    'task': qos.LATCHED,
+    'spine_load': qos.FRAMES,
+}
+
+#: Time [s] without any message after which the graph counts as quiet.
+QUIET = 1.0
+
+
+@dataclass(frozen=True)
+class RunOptions:
+    """What to run and how.
+
+    Attributes
+    ----------
+    bag : Path
+        The recording.
+    output : Path
+        Folder for results.mcap, report.html and logs; files of an earlier run are replaced.
+    rate : float
+        Times real time.
+    station : str
+        Namespace of the graph.
+    settle_timeout : float
+        Time [s] the graph has after the recording's end to finish all lifts.
+    """
+
+    bag: Path
+    output: Path
+    rate: float = 1.0
+    station: str = 'station_1'
+    settle_timeout: float = 120.0
+
+
+@dataclass
+class RunReport:
+    """What a run left behind.
+
+    Attributes
+    ----------
+    results : Path
+        MCAP file with the results.
+    state : LiveState
+        What happened.
+    time_to_play : float
+        From the start of the command's work to the first played message [s].
+    exit_codes : dict
+        Exit code of each process.
+    """
+
+    results: Path
+    state: LiveState
+    time_to_play: float
+    exit_codes: dict[str, int] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class BagSummary:
+    """Start [s], duration [s] and loads per day of a recording."""
+
+    start: float
+    duration: float
+    lifts_per_day: float
+
+
+def summarise(path: Path) -> BagSummary:
+    """Read what the live view must know before the first message."""
+    with BagReader(path) as bag:
+        tasks = [name for name in bag.topics if name.strip('/') == 'task']
+        per_day = [m.lifts_per_day for _, _, m in bag.messages(tasks)] if tasks else []
+        return BagSummary(
+            bag.start_ns * 1e-9, (bag.end_ns - bag.start_ns) * 1e-9, per_day[-1] if per_day else 0.0
+        )
+
+
+def run_online(options: RunOptions, say: Callable[[str], None] = print) -> RunReport:
+    """Run a recording through the graph.
+
+    Raises
+    ------
+    lifting_bringup.graph_errors.GraphError
+        If the graph does not come up, dies or does not finish.
+    lifting_bringup.bags.exceptions.BagError
+        If the recording cannot be read.
+    """
+    began = time.monotonic()
+    summary = summarise(options.bag)
+    logs = options.output / 'logs'
+    shutil.rmtree(options.output / 'recording', ignore_errors=True)
+    options.output.mkdir(parents=True, exist_ok=True)
+    rclpy.init()
+    node = Node('lift_run', namespace=options.station)
+    executor = EventsExecutor()
+    executor.add_node(node)
+    helpers: list[NodeProcess] = []
+    graph = Graph(node, executor, options.station, logs)
+    try:
+        graph.start()
+        helpers += _start_helpers(options, logs)
+        recorder, player = helpers
+        say('starting the graph: muscle_analyzer, lift_predictor, motion_tracker, injury_monitor')
+        graph.bring_up()
+        session = _Session(options, summary, node, executor, graph)
+        session.wait_for_service(SetBool, 'player/pause', [recorder, player])
+        ready = time.monotonic() - began
+        say(f'playing {options.bag.name} at {options.rate:g} times real time')
+        session.play(player, recorder)
+        codes = {'recorder': recorder.stop(), **graph.stop()}
+        results = _collect(options.output)
+        return RunReport(results, session.state, ready, codes)
+    finally:
+        for helper in helpers:
+            helper.stop()
+        graph.stop()
+        executor.shutdown()
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+def _start_helpers(options: RunOptions, logs: Path) -> list[NodeProcess]:
+    topics = [f'/{options.station}/{topic}' for topic in RESULT_TOPICS]
+    recorder = start_module(
+        'recorder',
+        'lifting_bringup.cli',
+        logs,
+        arguments=('record', str(options.output / 'recording'), '--topics', *topics),
+    )
+    player = start_module(
+        'player',
+        'lifting_bringup.cli',
+        logs,
+        arguments=(
+            'play', str(options.bag), '--rate', str(options.rate), '--station', options.station,
+            '--start-paused',
+        ),
+    )
+    return [recorder, player]
+
+
+def _collect(output: Path) -> Path:
+    """Move the recorded file to its place and drop the folder around it."""
+    files = sorted((output / 'recording').glob('*.mcap'))
+    if len(files) != 1:
+        raise SessionError(f'{output / "recording"} holds {len(files)} MCAP files, not one')
+    results = output / 'results.mcap'
+    files[0].replace(results)
+    shutil.rmtree(output / 'recording')
+    return results
+
+
+class _Session:
+    """Playing and settling of one run, with its live view."""
+
+    def __init__(
+        self,
+        options: RunOptions,
+        summary: BagSummary,
+        node: Node,
+        executor: Executor,
+        graph: Graph,
+    ) -> None:
+        self._options = options
+        self._node = node
+        self._executor = executor
+        self._graph = graph
+        self.state = LiveState(summary.start)
+        limits = limits_for(summary.lifts_per_day)
+        self._view = LiveView(
+            self.state,
+            summary.duration,
+            {
+                'compression': limits.compression_action.value,
+                'shear': limits.shear.value,
+            },
+        )
+        self._last = time.monotonic()
+        for topic, message_type in FOLLOWED.items():
+            profile = _QOS.get(topic, qos.RESULTS)
+            node.create_subscription(message_type, topic, self._take, profile)
+
+    def _take(self, message: Any) -> None:
+        self._last = time.monotonic()
+        self._view.add(self.state.update(message))
+
+    def wait_for_service(
+        self, service: type, name: str, processes: list[NodeProcess], timeout: float = 30.0
+    ) -> None:
+        """Wait until a helper process offers its service."""
+        client = self._node.create_client(service, name)
+        deadline = time.monotonic() + timeout
+        while not client.service_is_ready():
+            self._check(processes)
+            if time.monotonic() > deadline:
+                raise SessionError(f'{name} did not appear within {timeout:g} s')
+            self._executor.spin_once(timeout_sec=0.02)
+        self._node.destroy_client(client)
+
+    def play(self, player: NodeProcess, recorder: NodeProcess) -> None:
+        """Play to the end, have the last frames flushed and wait for all results."""
+        with self._view:
+            self._call(SetBool, 'player/pause', SetBool.Request(data=False))
+            while player.process.poll() is None:
+                self._check([recorder])
+                self._step()
+            if player.process.returncode != 0:
+                player.check()
+            response = self._call(Trigger, 'motion_tracker/flush', Trigger.Request())
+            if not response.success:
+                self._view.add([Line(float('nan'), response.message, Kind.WARNING)])
+            deadline = time.monotonic() + self._options.settle_timeout
+            while not (self.state.complete and time.monotonic() - self._last > QUIET):
+                self._check([recorder])
+                self._step()
+                if time.monotonic() > deadline:
+                    missing = sorted(self.state.lifts_ended - self.state.lifts_assessed)
+                    raise SessionError(f'no assessment of {", ".join(missing) or "the last frames"}')
+            if not self.state.lifts_ended:
+                text = 'no lift found in this recording: see the criteria of motion_tracker'
+                self._view.add([Line(float('nan'), text, Kind.WARNING)])
+
+    def _check(self, processes: list[NodeProcess]) -> None:
+        self._graph.check()
+        for process in processes:
+            process.check()
+
+    def _step(self) -> None:
+        self._executor.spin_once(timeout_sec=0.1)
+        self._view.refresh()
+
+    def _call(self, service: type, name: str, request: Any, timeout: float = 30.0) -> Any:
+        client = self._node.create_client(service, name)
+        future = client.call_async(request)
+        deadline = time.monotonic() + timeout
+        while not future.done():
+            self._graph.check()
+            if time.monotonic() > deadline:
+                raise SessionError(f'{name} did not answer within {timeout:g} s')
+            self._step()
+        self._node.destroy_client(client)
+        return future.result()
+
+
