@@ -95,9 +95,7 @@ def align(
     positions = raw.positions * scale
     up, text = conventions.vertical_axis(positions, raw.plates, roles, options.vertical)
     said.append(text)
-    facing, text = conventions.facing_axis(
-        positions, conventions.AXES[up], roles, options.facing
-    )
+    facing, text = conventions.facing_axis(positions, conventions.AXES[up], roles, options.facing)
     said.append(text)
     turn = conventions.rotation(up, facing)
     origin = np.array([0.0, 0.0, options.floor_height])

@@ -13,7 +13,7 @@ from contextlib import ExitStack
 from heapq import merge
 from pathlib import Path
 from types import TracebackType
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from rosbags.interfaces import (
@@ -36,7 +36,7 @@ WORLD = 'world'
 # A recording carries no date: its stamps count from here [ns], so that no stamp is zero, which
 # ROS takes for "no time".
 START_TIME_NS = 1_000_000_000_000_000_000
-BAG_VERSION = 9
+BAG_VERSION: Literal[9] = 9
 
 _NO_LIMIT = QosTime(9223372036, 854775807)
 
@@ -171,9 +171,7 @@ class BagWriter:
             position=self.point(position),
             orientation=self.make('geometry_msgs/msg/Quaternion', x=x, y=y, z=z, w=w),
         )
-        return self.make(
-            'geometry_msgs/msg/PoseStamped', header=self.header(stamp_ns), pose=pose
-        )
+        return self.make('geometry_msgs/msg/PoseStamped', header=self.header(stamp_ns), pose=pose)
 
 
 def in_order(*streams: Iterator[tuple[int, str, Any]]) -> Iterator[tuple[int, str, Any]]:

@@ -46,7 +46,7 @@ def box_poses(
         raise ConventionError(f'recording.box_markers: the recording has no {missing}')
     columns = [names.index(name) for name in layout]
     local = np.array(list(layout.values()), dtype=np.float64)
-    if np.linalg.matrix_rank(local - local.mean(axis=0), tol=1e-3) < 2:  # noqa: PLR2004
+    if np.linalg.matrix_rank(local - local.mean(axis=0), tol=1e-3) < 2:
         raise ConventionError('recording.box_markers: the markers lie on one line')
     n = len(markers)
     position, quaternion = np.full((n, 3), np.nan), np.full((n, 4), np.nan)

@@ -61,7 +61,7 @@ def read_c3d(path: str | Path, emg: tuple[str, ...] | None = None) -> RawRecordi
     """
     path = Path(path)
     head = path.read_bytes()[:2]
-    if len(head) < 2 or head[1] != _MAGIC_BYTE:  # noqa: PLR2004
+    if len(head) < 2 or head[1] != _MAGIC_BYTE:
         raise FileFormatError(path, 'is not a C3D file (second byte is not 0x50)')
     try:
         c3d = ezc3d.c3d(str(path), extract_forceplat_data=True)
@@ -142,9 +142,7 @@ def _plates(path: Path, c3d: Any, time: Any) -> tuple[tuple[Plate, ...], set[int
     return tuple(plates), {int(c) - 1 for c in channel.ravel()}
 
 
-def _analog(
-    path: Path, c3d: Any, used: set[int], wanted: tuple[str, ...] | None
-) -> Analog | None:
+def _analog(path: Path, c3d: Any, used: set[int], wanted: tuple[str, ...] | None) -> Analog | None:
     values = np.asarray(c3d['data']['analogs'], dtype=np.float64)
     if values.size == 0:
         if wanted:

@@ -17,7 +17,9 @@ from lifting_bringup.bags.recording import SIDES, Array, Plate
 
 UNIT_METRES = {'m': 1.0, 'mm': 1e-3, 'cm': 1e-2}
 AXES = {
-    sign + 'xyz'[i]: (1.0 if sign == '+' else -1.0) * np.eye(3)[i] for sign in '+-' for i in range(3)
+    f'{"+" if sign > 0.0 else "-"}{"xyz"[i]}': sign * np.eye(3)[i]
+    for sign in (1.0, -1.0)
+    for i in range(3)
 }
 # A person's markers span between a deep squat and raised arms, as fractions of the stature:
 # wide enough for every posture, narrow enough to tell mm, cm and m apart.
@@ -140,7 +142,7 @@ def facing_axis(
     if not directions:
         roles.require(positions, 'heel')
         roles.require(positions, 'toe')
-    if len(directions) == 2 and directions['feet'] @ directions['pelvis'] < _AXIS_COSINE:  # noqa: PLR2004
+    if len(directions) == 2 and directions['feet'] @ directions['pelvis'] < _AXIS_COSINE:
         angle = np.degrees(np.arccos(np.clip(directions['feet'] @ directions['pelvis'], -1, 1)))
         raise ConventionError(
             f'facing direction: toes and pelvis point {angle:.0f} degrees apart: are the heel, '

@@ -139,7 +139,8 @@ def import_recording(options: ImportOptions) -> ImportReport:
     recording = align(
         raw, subject.stature, subject.mass, options.conventions, entry.recording.roles
     )
-    calibration, lengths, said = None, {}, ()
+    calibration: MarkerCalibration | None = None
+    said: tuple[str, ...] = ()
     if options.static is not None:
         still = rename_markers(read_raw(options.static, None, ()), entry)
         # The conventions of the static trial are detected anew: it may be another file kind.
@@ -150,9 +151,9 @@ def import_recording(options: ImportOptions) -> ImportReport:
             options.conventions,
             entry.recording.roles,
         )
-        calibration, lengths, said = calibrate(trial, entry)
+        calibration, said = calibrate(trial, entry)
     recording = replace(recording, statements=(*recording.statements, *said))
-    return write_bag(options, entry, recording, calibration, lengths)
+    return write_bag(options, entry, recording, calibration)
 
 
 def write_bag(
@@ -160,17 +161,18 @@ def write_bag(
     entry: SubjectFile,
     recording: Recording,
     calibration: MarkerCalibration | None,
-    lengths: dict[str, float],
 ) -> ImportReport:
     """Write an aligned recording to `options.output`."""
     counts: dict[str, int] = {}
     origin_ns = options.start_time_ns - round(recording.time[0] * 1e9)
     source = ' '.join((f'Imported from {recording.path.name}.', *recording.statements))
-    position, quaternion = box_poses(
-        recording.names, recording.markers, entry.recording.box_markers
-    ) if entry.recording.box_markers else (None, None)
+    position, quaternion = (
+        box_poses(recording.names, recording.markers, entry.recording.box_markers)
+        if entry.recording.box_markers
+        else (None, None)
+    )
     with BagWriter(options.output, compress=options.compress) as writer:
-        streams = [_latched(writer, options.start_time_ns, entry, source, calibration, lengths)]
+        streams = [_latched(writer, options.start_time_ns, entry, source, calibration)]
         streams.append(marker_stream(writer, origin_ns, recording))
         streams += [
             plate_stream(writer, origin_ns, side, recording.plates[side])
@@ -178,9 +180,7 @@ def write_bag(
             if side in recording.plates
         ]
         if position is not None and quaternion is not None:
-            streams.append(
-                pose_stream(writer, origin_ns, recording.time, position, quaternion)
-            )
+            streams.append(pose_stream(writer, origin_ns, recording.time, position, quaternion))
         if recording.analog is not None:
             streams.append(_emg_stream(writer, origin_ns, recording.analog))
         for stamp, topic, message in in_order(*streams):
@@ -203,13 +203,12 @@ def _latched(
     entry: SubjectFile,
     source: str,
     calibration: MarkerCalibration | None,
-    lengths: dict[str, float],
 ) -> Stream:
     writer.topic('subject', 'lifting_interfaces/msg/Subject', transient_local=True)
     writer.topic('task', 'lifting_interfaces/msg/Task', transient_local=True)
     task: TaskEntry = entry.task
     subject = subject_message(
-        writer, stamp_ns, entry.subject, entry.recording.marker_set, calibration, lengths
+        writer, stamp_ns, entry.subject, entry.recording.marker_set, calibration
     )
     return iter(
         (

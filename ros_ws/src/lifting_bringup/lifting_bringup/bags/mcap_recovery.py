@@ -96,8 +96,9 @@ def recover(path: Path) -> Recovered:
         )
     found = Recovered()
     schemas: dict[int, tuple[str, str, str]] = {}
-    end = len(MAGIC)
+    whole = len(MAGIC)
     for code, body, end in _records(data, len(MAGIC)):
+        whole = end
         if code == _DATA_END:
             found.complete = True
             break
@@ -107,7 +108,7 @@ def recover(path: Path) -> Recovered:
         else:
             _read_record(found, schemas, code, body)
     else:
-        found.bytes_lost += _read_torn_chunk(found, schemas, data, end)
+        found.bytes_lost += _read_torn_chunk(found, schemas, data, whole)
     if not found.messages:
         raise UnreadableBagError(
             f'{path}: no message can be read ({len(data)} bytes, cut off before the first)'
@@ -141,18 +142,20 @@ def _read_record(
             found.messages.append((stamp, channel, body[_MESSAGE_HEAD.size :]))
     elif code == _SCHEMA:
         (key,) = struct.unpack_from('<H', body)
-        name, position = _string(body, 2)
-        encoding, position = _string(body, position)
-        text, _ = _string(body, position)
-        schemas[key] = (name.decode(), encoding.decode(), text.decode())
+        parts = []
+        position = 2
+        for _ in range(3):
+            part, position = _string(body, position)
+            parts.append(part.decode())
+        schemas[key] = (parts[0], parts[1], parts[2])
     elif code == _CHANNEL:
         key, schema = struct.unpack_from('<HH', body)
         topic, position = _string(body, 4)
         _, position = _string(body, position)
         metadata, _ = _string(body, position)
-        name, encoding, text = schemas.get(schema, ('', '', ''))
+        msgtype, encoding, text = schemas.get(schema, ('', '', ''))
         found.channels[key] = RecoveredChannel(
-            topic.decode(), name, text, encoding, _quality(metadata)
+            topic.decode(), msgtype, text, encoding, _quality(metadata)
         )
 
 
@@ -177,9 +180,7 @@ def _decompress(compression: bytes, data: bytes) -> bytes:
     raise UnreadableBagError(f'unknown MCAP compression {compression!r}')
 
 
-def _read_chunk(
-    found: Recovered, schemas: dict[int, tuple[str, str, str]], body: bytes
-) -> bool:
+def _read_chunk(found: Recovered, schemas: dict[int, tuple[str, str, str]], body: bytes) -> bool:
     """Read a whole chunk; return False when it is damaged (its bytes are then counted lost)."""
     _, last, size, crc = _CHUNK_HEAD.unpack_from(body)
     found.last_announced_ns = max(found.last_announced_ns, last)
@@ -211,7 +212,8 @@ def _read_torn_chunk(
         content = _decompress(compression, rest[start + 8 :])
     except (zstd.ZstdError, RuntimeError):
         return int(size)
-    end = 0
+    whole = 0
     for code, record, end in _records(content, 0):
+        whole = end
         _read_record(found, schemas, code, record)
-    return int(size) - end
+    return int(size) - whole

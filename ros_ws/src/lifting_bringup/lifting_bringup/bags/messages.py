@@ -4,7 +4,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -28,6 +29,8 @@ class MarkerCalibration:
         [m] in the segment's anatomical frame.
     rms : float
         Root mean square distance of the markers in the static trial [m].
+    segment_lengths : dict
+        Segment lengths the static trial suggests [m]; may be empty.
     """
 
     marker_set: str
@@ -35,6 +38,7 @@ class MarkerCalibration:
     segments: tuple[str, ...]
     offsets: Array
     rms: float
+    segment_lengths: Mapping[str, float] = field(default_factory=dict)
 
 
 def subject_message(
@@ -43,7 +47,6 @@ def subject_message(
     entry: SubjectEntry,
     marker_set: str,
     calibration: MarkerCalibration | None,
-    lengths: dict[str, float] | None = None,
 ) -> Any:
     """Return a lifting_interfaces/Subject.
 
@@ -59,10 +62,10 @@ def subject_message(
         Name of the marker set of the recording; '' if none is named.
     calibration : MarkerCalibration or None
         From a static trial.
-    lengths : dict or None
-        Segment lengths [m] found by the calibration; entered lengths take precedence.
     """
-    merged = {**(lengths or {}), **entry.segment_lengths}
+    found = calibration.segment_lengths if calibration else {}
+    # What a person measured takes precedence over what the static trial suggests.
+    merged = {**found, **entry.segment_lengths}
     return writer.make(
         'lifting_interfaces/msg/Subject',
         header=writer.header(stamp_ns, ''),

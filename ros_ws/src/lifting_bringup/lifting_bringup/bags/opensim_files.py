@@ -155,7 +155,7 @@ def read_trc(path: str | Path) -> MarkerTable:
     """
     path = Path(path)
     lines = _lines(path)
-    if not lines[0].startswith('PathFileType') or len(lines) < 5:  # noqa: PLR2004
+    if not lines[0].startswith('PathFileType') or len(lines) < 5:
         raise FileFormatError(path, 'is not a TRC file (no PathFileType header)', line=1)
     keys, entries = lines[1].split(), lines[2].split()
     header = dict(zip(keys, entries, strict=False))
@@ -236,21 +236,8 @@ def write_trc(path: str | Path, table: MarkerTable) -> None:
     path.write_text('\n'.join(lines) + '\n', encoding='utf-8')
 
 
-def read_storage(path: str | Path) -> StorageTable:
-    """Read a MOT or STO file.
-
-    Parameters
-    ----------
-    path : str or Path
-        The file.
-
-    Raises
-    ------
-    FileFormatError
-        Foreign, truncated or inconsistent file.
-    """
-    path = Path(path)
-    lines = _lines(path)
+def _storage_header(path: Path, lines: list[str]) -> tuple[dict[str, str], tuple[str, ...], int]:
+    """Return the header, the column labels and the index of their line."""
     header: dict[str, str] = {}
     end = None
     for i, line in enumerate(lines):
@@ -271,6 +258,25 @@ def read_storage(path: str | Path) -> StorageTable:
     if not labels or labels[0].lower() != 'time':
         raise FileFormatError(path, 'first column is not time', line=label_line + 1)
     _unique(path, label_line + 1, labels)
+    return header, labels, label_line
+
+
+def read_storage(path: str | Path) -> StorageTable:
+    """Read a MOT or STO file.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+
+    Raises
+    ------
+    FileFormatError
+        Foreign, truncated or inconsistent file.
+    """
+    path = Path(path)
+    lines = _lines(path)
+    header, labels, label_line = _storage_header(path, lines)
     numbered = [(i + 1, s) for i, s in enumerate(lines) if i > label_line and s.strip()]
     for keys, found, what in (
         (('nrows', 'datarows'), len(numbered), 'rows'),
@@ -292,7 +298,7 @@ def read_storage(path: str | Path) -> StorageTable:
             )
         for j, text in enumerate(cells):
             data[i, j] = _number(path, number, labels[j], text)
-    if not len(numbered):
+    if not numbered:
         raise FileFormatError(path, 'holds no rows')
     check_stamps(path, data[:, 0], numbered[0][0])
     degrees = header.get('indegrees')

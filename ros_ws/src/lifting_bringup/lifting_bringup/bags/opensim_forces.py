@@ -15,7 +15,9 @@ from lifting_bringup.bags.recording import Plate, RawRecording
 
 # Both namings in use: ground_force_1_vx / ground_force_1_mx and 1_ground_force_vx /
 # 1_ground_torque_x (OpenSim user guide, "External loads").
-_FORCE = re.compile(r'^(?P<before>.*?)(?P<kind>force)_?(?P<after>.*?)_?(?P<what>[vp])(?P<axis>[xyz])$')
+_FORCE = re.compile(
+    r'^(?P<before>.*?)(?P<kind>force)_?(?P<after>.*?)_?(?P<what>[vp])(?P<axis>[xyz])$'
+)
 _MOMENT = re.compile(
     r'^(?P<before>.*?)(?P<kind>force|torque|moment)_?(?P<after>.*?)_?(?P<what>m?)(?P<axis>[xyz])$'
 )

@@ -25,8 +25,10 @@ def orient_plates(plates: tuple[Plate, ...]) -> tuple[tuple[Plate, ...], str]:
     ConventionError
         Some plates push up and others down.
     """
-    signs = {p.name: float(np.sign(np.median(p.force[np.argsort(-abs(p.force[:, 2]))][:50, 2])))
-             for p in plates}
+    signs = {
+        p.name: float(np.sign(np.median(p.force[np.argsort(-abs(p.force[:, 2]))][:50, 2])))
+        for p in plates
+    }
     if len(set(signs.values())) > 1:
         raise ConventionError(f'plate sign: the plates disagree on up and down: {signs}')
     if set(signs.values()) == {-1.0}:

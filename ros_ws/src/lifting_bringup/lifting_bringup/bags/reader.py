@@ -206,8 +206,8 @@ class BagReader:
         self.start_ns, self.end_ns = min(stamps), max(stamps)
         for part in self._recovered:
             counts = dict.fromkeys(part.channels, 0)
-            for _, channel, _ in part.messages:
-                counts[channel] += 1
+            for _, key, _ in part.messages:
+                counts[key] += 1
             for key, channel in part.channels.items():
                 old = self.topics.get(channel.topic)
                 self.topics[channel.topic] = BagTopic(
@@ -246,9 +246,7 @@ class BagReader:
         if self._reader is None:
             yield from self._raw_recovered(topics, start_ns)
             return
-        connections = [
-            c for c in self._reader.connections if topics is None or c.topic in topics
-        ]
+        connections = [c for c in self._reader.connections if topics is None or c.topic in topics]
         if not connections:
             return
         try:

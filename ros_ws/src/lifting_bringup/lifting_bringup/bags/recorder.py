@@ -12,8 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import rclpy
-from rclpy.experimental import EventsExecutor
+from rclpy.executors import Executor
 from rclpy.node import Node
 from rosbags.interfaces import Nodetype
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
@@ -22,6 +21,7 @@ from lifting_bringup.bags.bag_writer import BAG_VERSION, quality
 from lifting_bringup.bags.exceptions import BagError
 from lifting_bringup.bags.message_types import typestore
 from lifting_bringup.bags.qos import message_class, recorded_quality, subscription_profile
+from lifting_bringup.bags.ros_context import own_node
 
 _DISCOVERY_SECONDS = 0.1
 _SPIN_SECONDS = 0.05
@@ -114,17 +114,8 @@ def record(
     writer = Writer(options.output, version=BAG_VERSION, storage_plugin=StoragePlugin.MCAP)
     if options.compress:
         writer.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
-    context = rclpy.Context()
-    context.init()
-    try:
-        node = Node('recorder', context=context)
-        try:
-            with writer:
-                return _Recording(options, control, say, writer, node).run()
-        finally:
-            node.destroy_node()
-    finally:
-        context.try_shutdown()
+    with writer, own_node('recorder') as (node, executor):
+        return _Recording(options, control, say, writer, node, executor).run()
 
 
 class _Recording:
@@ -137,13 +128,13 @@ class _Recording:
         say: Callable[[str], None],
         writer: Writer,
         node: Node,
+        executor: Executor,
     ) -> None:
         self._options, self._control, self._say = options, control, say
         self._writer, self._node = writer, node
         self._counts: dict[str, int] = {}
         self._skipped: dict[str, str] = {}
-        self._executor = EventsExecutor(context=node.context)
-        self._executor.add_node(node)
+        self._executor = executor
 
     def run(self) -> RecordReport:
         """Join topics as they appear and write what arrives."""
@@ -158,7 +149,6 @@ class _Recording:
                 next_look = now + _DISCOVERY_SECONDS
             self._executor.spin_once(timeout_sec=_SPIN_SECONDS)
         self._drain()
-        self._executor.shutdown()
         return RecordReport(self._options.output, dict(self._counts), dict(self._skipped))
 
     def _drain(self) -> None:

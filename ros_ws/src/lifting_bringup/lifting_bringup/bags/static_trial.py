@@ -10,9 +10,7 @@ from lifting_bringup.bags.recording import Recording
 from lifting_bringup.bags.subject_file import SubjectFile
 
 
-def calibrate(
-    trial: Recording, entry: SubjectFile
-) -> tuple[MarkerCalibration, dict[str, float], tuple[str, ...]]:
+def calibrate(trial: Recording, entry: SubjectFile) -> tuple[MarkerCalibration, tuple[str, ...]]:
     """Return the calibration, segment lengths [m] and statements for the report.
 
     Raises

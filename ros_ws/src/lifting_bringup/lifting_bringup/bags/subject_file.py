@@ -31,7 +31,7 @@
       rename: {OLD: NEW}       # marker names of the file to names of the set
       roles: {HEEL_R: heel right}    # for marker names the importer does not know
       box_markers: {BOX1: [x, y, z]} # three or more, m from the box centre, box axes
-      emg: [EMG1, EMG2]        # analog channels of a C3D file to keep; all but the plates if absent
+      emg: [EMG1, EMG2]        # analog channels of a C3D file to keep; else all but the plates
 """
 
 from __future__ import annotations
@@ -163,7 +163,7 @@ class _Section:
         return self.as_triple(key, self.take(key, *default))
 
     def as_triple(self, key: str, value: object) -> tuple[float, float, float]:
-        if not isinstance(value, list | tuple) or len(value) != 3:  # noqa: PLR2004
+        if not isinstance(value, list | tuple) or len(value) != 3:
             raise self.error(key, f'expected three numbers, found {value!r}')
         if any(isinstance(v, bool) or not isinstance(v, int | float) for v in value):
             raise self.error(key, f'expected three numbers, found {value!r}')
@@ -210,7 +210,7 @@ def _subject(section: _Section) -> SubjectEntry:
         raise section.error('pseudonym', 'is empty')
     lengths = section.mapping('segment_lengths')
     for name, value in lengths.items():
-        if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < 2.0:  # noqa: PLR2004
+        if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < 2.0:
             raise section.error(f'segment_lengths.{name}', f'{value!r} is not a length in metres')
     entry = SubjectEntry(
         pseudonym=pseudonym,
@@ -254,7 +254,7 @@ def _recording(section: _Section) -> RecordingEntry:
     if emg is not None and not isinstance(emg, list):
         raise section.error('emg', f'expected a list of channel names, found {emg!r}')
     box = section.mapping('box_markers')
-    if box and len(box) < 3:  # noqa: PLR2004
+    if box and len(box) < 3:
         raise section.error('box_markers', f'{len(box)} markers do not fix a box; 3 are needed')
     entry = RecordingEntry(
         marker_set=section.text('marker_set', ''),
