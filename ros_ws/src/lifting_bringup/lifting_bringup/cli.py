@@ -136,8 +136,8 @@ def _play(options: argparse.Namespace) -> int:
     )
     total = sum(report.messages.values())
     print(
-        f'{total} messages in {report.wall_time:.2f} s; late by {1e3 * report.lateness_p50:.2f} ms '
-        f'(median), {1e3 * report.lateness_p99:.2f} ms (p99)'
+        f'{total} messages in {report.wall_time:.2f} s; late by '
+        f'{1e3 * report.lateness_p50:.2f} ms (median), {1e3 * report.lateness_p99:.2f} ms (p99)'
     )
     if not report.acknowledged:
         print('some subscribers have not acknowledged all messages', file=sys.stderr)
@@ -202,7 +202,8 @@ def _import(options: argparse.Namespace) -> int:
 def _report(options: argparse.Namespace) -> int:
     from lifting_bringup.results import write_report
 
-    page = write_report(options.results, options.output or options.results.with_name('report.html'))
+    output = options.output or options.results.with_name('report.html')
+    page = write_report(options.results, output)
     print(page)
     return 0
 

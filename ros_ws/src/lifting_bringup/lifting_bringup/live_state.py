@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""What happens while a recording runs, in words and numbers; no terminal and no ROS process here."""
+"""What happens while a recording runs, in words and numbers; no terminal, no process."""
 
 from __future__ import annotations
 
@@ -127,9 +127,8 @@ class LiveState:
                 ]
             case Task():
                 origin = 'SIMULATED recording' if message.simulated else 'recording'
-                return [
-                    (f'task {message.task_id}: box of {message.box_mass:g} kg ({origin})', Kind.PLAIN)
-                ]
+                text = f'task {message.task_id}: box of {message.box_mass:g} kg ({origin})'
+                return [(text, Kind.PLAIN)]
             case LiftEvent():
                 return [self._lift_event(message)]
             case PredictedLift():
@@ -194,8 +193,8 @@ def _comparison(message: LiftComparison) -> list[tuple[str, Kind]]:
         for name, value in zip(message.joint_names, message.joint_rmse, strict=True)
     )
     text = (
-        f'{message.lift_id} recorded against optimal: effort {message.measured_effort:.3g} against '
-        f'{message.predicted_effort:.3g}; RMSE [deg] {angles}'
+        f'{message.lift_id} recorded against optimal: effort {message.measured_effort:.3g} '
+        f'against {message.predicted_effort:.3g}; RMSE [deg] {angles}'
     )
     return [(text, Kind.PLAIN)]
 
@@ -208,8 +207,9 @@ def _alarm(message: AlarmEvent) -> tuple[str, Kind]:
         AlarmEvent.LATCHED_ACKNOWLEDGED,
     )
     text = (
-        f'{"ALARM" if active else "alarm returned"} {message.alarm_id}: {message.value:.4g} {message.unit}, '
-        f'limit {message.limit:.4g} {message.unit}, margin {message.margin:.4g} {message.unit}'
+        f'{"ALARM" if active else "alarm returned"} {message.alarm_id}: '
+        f'{message.value:.4g} {message.unit}, limit {message.limit:.4g} {message.unit}, '
+        f'margin {message.margin:.4g} {message.unit}'
     )
     return text, Kind.ALARM if active else Kind.GOOD
 

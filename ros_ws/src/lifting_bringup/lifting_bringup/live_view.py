@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""The live view in the terminal: gauges while the recording runs, one line for each thing that happens."""
+"""The live view: gauges while the recording runs, a line for each thing that happens."""
 
 from __future__ import annotations
 

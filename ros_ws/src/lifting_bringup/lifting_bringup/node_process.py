@@ -43,7 +43,8 @@ class NodeProcess:
         code = self.process.poll()
         if code is not None:
             tail = self.log.read_text(encoding='utf-8', errors='replace')[-2000:]
-            raise NodeDiedError(f'{self.name} ended with exit code {code}; {self.log} ends:\n{tail}')
+            text = f'{self.name} ended with exit code {code}; {self.log} ends:\n{tail}'
+            raise NodeDiedError(text)
 
     def stop(self) -> int:
         """End the process, first gently; return its exit code."""
@@ -59,8 +60,9 @@ class NodeProcess:
 def environment() -> dict[str, str]:
     """Return the environment of a node process.
 
-    Discovery stays on this machine unless the user has said otherwise: a worker's data do not leave the station by
-    default. Numerical libraries get one thread, as one frame's matrices are too small to share.
+    Discovery stays on this machine unless the user has said otherwise: a worker's data do not
+    leave the station by default. Numerical libraries get one thread, as one frame's matrices are
+    too small to share.
     """
     values = dict(os.environ)
     values.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""`lift run`: one recording through the whole graph, each node a process, with a live view and a record of the results."""
+"""`lift run`: one recording through the whole graph, each node a process, results recorded."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from pathlib import Path
 from typing import Any
 
 import rclpy
-from injury_monitor.core.limits import limits_for
 from rclpy.executors import Executor
 from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
 from std_srvs.srv import SetBool, Trigger
 
+from injury_monitor.core.limits import limits_for
 from lifting_bringup.bags.reader import BagReader
 from lifting_bringup.graph import Graph
 from lifting_bringup.graph_errors import SessionError
@@ -117,7 +117,9 @@ def summarise(path: Path) -> BagSummary:
         tasks = [name for name in bag.topics if name.strip('/') == 'task']
         per_day = [m.lifts_per_day for _, _, m in bag.messages(tasks)] if tasks else []
         return BagSummary(
-            bag.start_ns * 1e-9, (bag.end_ns - bag.start_ns) * 1e-9, per_day[-1] if per_day else 0.0
+            start=bag.start_ns * 1e-9,
+            duration=(bag.end_ns - bag.start_ns) * 1e-9,
+            lifts_per_day=per_day[-1] if per_day else 0.0,
         )
 
 
@@ -261,7 +263,10 @@ class _Session:
                 self._step()
                 if time.monotonic() > deadline:
                     missing = sorted(self.state.lifts_ended - self.state.lifts_assessed)
-                    raise SessionError(f'no assessment of {", ".join(missing) or "the last frames"}')
+                    raise SessionError(
+                        f'no assessment of {", ".join(missing) or "the last frames"} within '
+                        f'{self._options.settle_timeout:g} s'
+                    )
             if not self.state.lifts_ended:
                 text = 'no lift found in this recording: see the criteria of motion_tracker'
                 self._view.add([Line(float('nan'), text, Kind.WARNING)])

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Messages of the core types that all rooms share, and back; a room's own results have their own conversions."""
+"""Messages of the core types that all rooms share, and back."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from human_model.motion import BodyMotion, Lift
-from human_model.report import SolveReport, SolveStatus
-from human_model.subject import Calibration, Subject
 from lifting_interfaces.msg import BodyMotion as BodyMotionMsg
 from lifting_interfaces.msg import MeasuredLift as MeasuredLiftMsg
 from lifting_interfaces.msg import SolveReport as SolveReportMsg
 from lifting_interfaces.msg import Subject as SubjectMsg
 
+from human_model.motion import BodyMotion, Lift
+from human_model.report import SolveReport, SolveStatus
+from human_model.subject import Calibration, Subject
 from lifting_node.stamps import to_seconds, to_stamp
 
 Array = npt.NDArray[np.float64]

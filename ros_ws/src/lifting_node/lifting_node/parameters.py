@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Node parameters declared from one table: default, unit, range, description; bad values are refused."""
+"""Node parameters declared from one table; bad values are refused."""
 
 from __future__ import annotations
 

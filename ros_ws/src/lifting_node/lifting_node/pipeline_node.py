@@ -24,9 +24,9 @@ from lifting_node.parameters import declare, load_table
 class PipelineNode(LifecycleNode):
     """Managed node: parameters declared, inputs guarded and counted, health on /diagnostics.
 
-    A subclass sets `PACKAGE` (whose `data/parameters.yaml` it declares) and `INPUT_ERRORS` (exceptions of its core that
-    mean bad input: they are logged and counted, and the node goes on; any other exception is a defect and ends the
-    process), and implements `build`.
+    A subclass sets `PACKAGE` (whose `data/parameters.yaml` it declares) and `INPUT_ERRORS`
+    (exceptions of its core that mean bad input: they are logged and counted, and the node goes
+    on; any other exception is a defect and ends the process), and implements `build`.
     """
 
     PACKAGE: ClassVar[str]

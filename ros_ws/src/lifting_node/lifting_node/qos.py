@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Quality of service of every topic of the graph, chosen in one place.
 
-The graph analyses recordings as well as live streams, and an analysis with a missing plate sample is wrong without
-looking wrong. So the input streams are reliable with a history deep enough for the slowest reader at ten times real
-time, not best effort.
+The graph analyses recordings as well as live streams, and an analysis with a missing plate
+sample is wrong without looking wrong. So the input streams are reliable with a history deep
+enough for the slowest reader at ten times real time, not best effort.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from rclpy.qos import (
     ReliabilityPolicy,
 )
 
-#: Samples a force plate at 2500 Hz sends in 16 s: what a reader may fall behind before a sample is lost.
+#: Samples of a 2500 Hz force plate in 16 s: how far a reader may fall behind without loss.
 PLATE_DEPTH = 40_000
 #: Frames of a 100 Hz stream in 60 s.
 FRAME_DEPTH = 6_000

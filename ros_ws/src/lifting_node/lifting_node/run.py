@@ -18,8 +18,9 @@ from lifting_node.parameters import ParameterError
 def run_node(factory: Callable[[], Node], args: list[str] | None = None) -> None:
     """Create a node and spin it until it is told to stop.
 
-    One event-driven executor a process, stepped with a time-out: it takes a third of the processor time of the
-    waiting executors at a thousand messages a second, and stepping keeps signals served.
+    One event-driven executor a process, stepped with a time-out: it takes a third of the
+    processor time of the waiting executors at a thousand messages a second, and stepping keeps
+    signals served.
 
     Parameters
     ----------

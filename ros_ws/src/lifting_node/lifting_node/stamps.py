@@ -15,6 +15,6 @@ def to_seconds(stamp: Time) -> float:
 
 
 def to_stamp(seconds: float) -> Time:
-    """Return seconds [s] as a stamp, rounded to the microsecond (a double holds no more of an epoch time)."""
+    """Return seconds [s] as a stamp, to the microsecond: a double holds no more of an epoch."""
     microseconds = round(seconds * 1_000_000)
     return Time(sec=microseconds // 1_000_000, nanosec=microseconds % 1_000_000 * 1000)

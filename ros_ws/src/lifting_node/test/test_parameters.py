@@ -4,8 +4,9 @@
 
 import pytest
 import rclpy
-from lifting_node.parameters import Parameter, ParameterError, declare
 from rclpy.node import Node
+
+from lifting_node.parameters import Parameter, ParameterError, declare
 
 TABLE = (
     Parameter('cutoff', 'Low-pass of the motion', 'Hz', 6.0, 1.0, 30.0),

@@ -3,6 +3,7 @@
 """Stamps and seconds go both ways."""
 
 import pytest
+
 from lifting_node.stamps import to_seconds, to_stamp
 
 
