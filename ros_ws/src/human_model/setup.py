@@ -23,7 +23,8 @@ setup(
     maintainer='The lift monitor authors',
     maintainer_email='maintainers@lift-monitor.example',
     description=(
-        'Anthropometry, 2D and 3D skeletons, recursive kinematics and dynamics, and joint strength of a lifting person.'
+        'Anthropometry, 2D and 3D skeletons, recursive kinematics and dynamics, and joint '
+        'strength of a lifting person.'
     ),
     license='Apache-2.0',
 )

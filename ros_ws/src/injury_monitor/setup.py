@@ -23,7 +23,8 @@ setup(
     maintainer='The lift monitor authors',
     maintainer_email='maintainers@lift-monitor.example',
     description=(
-        'Compares spine loads, joint torques and muscle activations with published limits and raises alarms.'
+        'Compares spine loads, joint torques and muscle activations with published limits '
+        'and raises alarms.'
     ),
     license='Apache-2.0',
     entry_points={

@@ -23,7 +23,8 @@ setup(
     maintainer='The lift monitor authors',
     maintainer_email='maintainers@lift-monitor.example',
     description=(
-        'Predicts by optimal control how the recorded lift could be done with the least effort, and compares it with the measured lift.'
+        'Predicts by optimal control how the recorded lift could be done with the least '
+        'effort, and compares it with the measured lift.'
     ),
     license='Apache-2.0',
     entry_points={

@@ -23,7 +23,8 @@ setup(
     maintainer='The lift monitor authors',
     maintainer_email='maintainers@lift-monitor.example',
     description=(
-        'Launch files, configuration and the lift command: import, play and record bags, run the graph, write the report.'
+        'Launch files, configuration and the lift command: import, play and record bags, '
+        'run the graph, write the report.'
     ),
     license='Apache-2.0',
     entry_points={

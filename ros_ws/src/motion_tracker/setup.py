@@ -23,7 +23,8 @@ setup(
     maintainer='The lift monitor authors',
     maintainer_email='maintainers@lift-monitor.example',
     description=(
-        'Recorded or live markers and force plates to joint states, ground reaction, centre of pressure and lift events.'
+        'Recorded or live markers and force plates to joint states, ground reaction, '
+        'centre of pressure and lift events.'
     ),
     license='Apache-2.0',
     entry_points={

@@ -23,7 +23,8 @@ setup(
     maintainer='The lift monitor authors',
     maintainer_email='maintainers@lift-monitor.example',
     description=(
-        'Muscle forces by static optimisation and L5-S1 joint reactions of measured and predicted lifts.'
+        'Muscle forces by static optimisation and L5-S1 joint reactions of measured and '
+        'predicted lifts.'
     ),
     license='Apache-2.0',
     entry_points={
