@@ -75,11 +75,18 @@ def find_compiler() -> str | None:
     return None
 
 
-def build_programme(grid: Grid) -> Programme:
+def build_programme(grid: Grid, compile_missing: bool = True) -> Programme:
     """Load the compiled functions of a grid, compiling them first if the cache has none.
 
     Without a C compiler, or if it fails, the functions run in CasADi's virtual machine (slower, same numbers) and `how`
     says why.
+
+    Parameters
+    ----------
+    grid : Grid
+        Sizes of the programme.
+    compile_missing : bool
+        False: do not wait for the compiler, use the virtual machine when the cache has no library.
     """
     start = time.perf_counter()
     compiler = find_compiler()
@@ -91,6 +98,8 @@ def build_programme(grid: Grid) -> Programme:
         directory.mkdir(parents=True, exist_ok=True)
         library = directory / f'{name}.so'
         how = 'compiled functions from the cache'
+        if not library.exists() and not compile_missing:
+            return _virtual_machine(grid, start, 'not compiled yet')
         if not library.exists() and _compile_locked(grid, compiler, library):
             how = f'functions compiled with {compiler}'
     except (OSError, subprocess.SubprocessError) as error:

@@ -12,4 +12,12 @@ class SplineError(LiftPredictorError):
 
 
 class TaskError(LiftPredictorError):
-    """A lift, box or subject does not describe a two-dimensional lifting task; names the field and value."""
+    """A lift, box or subject does not describe a sagittal lifting task; names the field and value."""
+
+
+class AsymmetricLiftError(TaskError):
+    """The recorded lift turns or leans to a side, which the sagittal model cannot follow."""
+
+
+class UnreachableError(LiftPredictorError):
+    """The hands cannot be brought where the task wants them, within the joint limits and postures."""

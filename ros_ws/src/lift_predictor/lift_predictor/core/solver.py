@@ -73,6 +73,10 @@ class Optimum:
     complementarity: float
     solve_time: float
 
+    def as_start(self) -> Start:
+        """Use the end of this run as a start."""
+        return Start(self.start, self.control)
+
 
 class LiftSolver:
     """IPOPT on one programme; built once, used for any person and task.
@@ -164,13 +168,21 @@ class LiftSolver:
         )
 
     def solve_all(
-        self, parameters: Array, bounds: LiftBounds, starts: Sequence[Start]
+        self,
+        parameters: Array,
+        bounds: LiftBounds,
+        starts: Sequence[Start],
+        deadline: float = float('inf'),
     ) -> tuple[Optimum, ...]:
-        """Run IPOPT from every start; the best comes first.
+        """Run IPOPT from every start, as far as the time allows; the best comes first.
 
-        Converged runs come before the others, then the lower effort, or the smaller violation where none converged.
+        Converged runs come before the others, then the lower effort, or the smaller violation where none converged. The
+        first start always runs; later ones are left out after the deadline (on the clock of `time.perf_counter`).
         """
-        runs = [self.solve(parameters, bounds, start) for start in starts]
+        runs: list[Optimum] = []
+        for start in starts:
+            if not runs or time.perf_counter() < deadline:
+                runs.append(self.solve(parameters, bounds, start))
         return tuple(
             sorted(runs, key=lambda r: (not r.converged, r.objective if r.converged else r.violation))
         )

@@ -1,0 +1,90 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Torques, limits, ground forces and constraint values of a motion by the sagittal model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lift_predictor.core.bspline import RestToRestSpline
+from lift_predictor.core.node_functions import CENTRES, REPORT_OUTPUTS
+from lift_predictor.core.parameters import LiftParameters
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class SagittalLoads:
+    """What the sagittal model says of n instants.
+
+    Attributes
+    ----------
+    torque, lower, upper : array, shape (n, 6)
+        Generalised forces of the joints and their dynamic limits [N m], both limbs together.
+    ground_force : array, shape (n, 2)
+        Force of the ground, forward and up [N].
+    zmp : array, shape (n,)
+        Zero-moment point, forward [m].
+    hand_force : array, shape (n, 2)
+        Force of the box on both hands [N].
+    rows : array, shape (n, n_rows)
+        Scaled constraints of `node_functions.NODE_ROWS`.
+    effort : array, shape (n,)
+        Integrand of the first term of equation 2.11.
+    centres : array, shape (n, 7, 2)
+        Joint centres of `node_functions.CENTRES` [m].
+    """
+
+    torque: Array
+    lower: Array
+    upper: Array
+    ground_force: Array
+    zmp: Array
+    hand_force: Array
+    rows: Array
+    effort: Array
+    centres: Array
+
+
+def evaluate(report: Any, q: Array, dq: Array, ddq: Array, parameters: LiftParameters) -> SagittalLoads:
+    """Run the model over n instants.
+
+    Parameters
+    ----------
+    report : casadi.Function
+        `Programme.functions['report']`.
+    q, dq, ddq : array, shape (n, 6)
+        Joint coordinates [rad], [rad/s], [rad/s^2].
+    parameters : LiftParameters
+        Person and task.
+    """
+    n = len(q)
+    outputs = report.map(n)(q.T, dq.T, ddq.T, parameters.pack())
+    values = {
+        name: np.asarray(output).reshape(-1, n).T
+        for name, output in zip(REPORT_OUTPUTS, outputs, strict=True)
+    }
+    ground_force = values['ground_force']
+    return SagittalLoads(
+        torque=values['torque'],
+        lower=values['lower'],
+        upper=values['upper'],
+        ground_force=ground_force,
+        zmp=values['ground_moment'][:, 0] / ground_force[:, 1],
+        hand_force=values['hand_force'],
+        rows=values['rows'],
+        effort=values['effort'][:, 0],
+        centres=values['centres'].reshape(n, len(CENTRES), 2),
+    )
+
+
+def sample(
+    spline: RestToRestSpline, control: Array, s: Array, duration: float
+) -> tuple[Array, Array, Array]:
+    """Joint coordinates of a spline at normalised times s (n,): q, dq, ddq, shape (n, 6) each, by real time."""
+    q, dq, ddq = (spline.basis(s, derivative) @ control for derivative in range(3))
+    return q, dq / duration, ddq / duration**2

@@ -1,0 +1,247 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""The pipeline: a recorded lift in, the optimal lift for the same person and task out."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from human_model.anthropometry import SegmentParameters
+from human_model.errors import HumanModelError
+from human_model.motion import Lift
+from human_model.report import SolveReport, SolveStatus
+from human_model.subject import Subject
+
+from lift_predictor.core.comparison import LiftComparison, compare
+from lift_predictor.core.compiled import Programme, build_programme
+from lift_predictor.core.evaluation import evaluate, sample
+from lift_predictor.core.exceptions import TaskError, UnreachableError
+from lift_predictor.core.lift_motion import body_motion, mtp_torque, sample_times
+from lift_predictor.core.nlp import Grid
+from lift_predictor.core.person import COEFFICIENT_SET, Person
+from lift_predictor.core.prediction import TORQUE_NAMES, PredictedLift2D
+from lift_predictor.core.solver import LiftSolver, Optimum
+from lift_predictor.core.starts import make_starts
+from lift_predictor.core.task import POSTURE_TOLERANCE, Box, LiftTask2D, build_task
+from lift_predictor.core.verify import Verification, verify
+
+TIMED_OUT: Final = 'Maximum_WallTime_Exceeded'
+INFEASIBLE: Final = 'Infeasible_Problem_Detected'
+
+
+@dataclass(frozen=True)
+class PredictorOptions:
+    """Settings of the prediction.
+
+    Attributes
+    ----------
+    n_control : int
+        Control points per joint.
+    n_nodes : int
+        Time nodes; see `nlp.Grid`.
+    posture_tolerance : float
+        Epsilon of equation 4.8 [rad].
+    coefficient_set : str
+        Published strength data, a name of `human_model.strength.coefficient_sets`.
+    time_limit : float
+        Wall time of the whole prediction at most [s], building the functions apart.
+    refinements : int
+        How often the nodes are doubled when the dense grid shows a violation.
+    """
+
+    n_control: int = 7
+    n_nodes: int = 25
+    posture_tolerance: float = POSTURE_TOLERANCE
+    coefficient_set: str = COEFFICIENT_SET
+    time_limit: float = 10.0
+    refinements: int = 2
+
+
+class LiftPredictor:
+    """Predicts recorded lifts of one subject.
+
+    Parameters
+    ----------
+    options : PredictorOptions
+        Settings.
+
+    Notes
+    -----
+    Building loads the compiled functions (or compiles them, once per machine), so that `predict` has the optimiser
+    ready.
+    """
+
+    def __init__(self, options: PredictorOptions | None = None) -> None:
+        self.options = options or PredictorOptions()
+        self.person: Person | None = None
+        self.programme: Programme = build_programme(
+            Grid(self.options.n_control, self.options.n_nodes)
+        )
+        self._solvers: dict[Grid, LiftSolver] = {}
+
+    def configure(self, subject: Subject, segments: SegmentParameters | None = None) -> None:
+        """Set the subject, and the segments of the sagittal skeleton if they are not to be estimated.
+
+        Raises
+        ------
+        TaskError
+            The subject cannot be turned into the sagittal model; names field and value.
+        """
+        try:
+            self.person = Person.of(subject, self.options.coefficient_set, segments)
+        except HumanModelError as error:
+            raise TaskError(str(error)) from error
+
+    def predict(self, lift: Lift, box: Box) -> PredictedLift2D:
+        """Solve the task of one recorded lift.
+
+        Parameters
+        ----------
+        lift : Lift
+            The recorded lift.
+        box : Box
+            What was lifted.
+
+        Returns
+        -------
+        PredictedLift2D
+            Its report says whether there is a solution; without one there are no data.
+
+        Raises
+        ------
+        TaskError
+            No subject was configured.
+        """
+        return self.predict_and_compare(lift, box)[0]
+
+    def predict_and_compare(
+        self, lift: Lift, box: Box
+    ) -> tuple[PredictedLift2D, LiftComparison | None]:
+        """Solve the task of one recorded lift and compare both; no comparison without a solution."""
+        if self.person is None:
+            raise TaskError('subject: none was configured before the first lift')
+        begin = time.perf_counter()
+        duration = lift.end - lift.start
+        try:
+            task = build_task(self.person, lift, box, self.options.posture_tolerance)
+        except (TaskError, UnreachableError) as error:
+            status = (
+                SolveStatus.PREDICTOR_UNREACHABLE
+                if isinstance(error, UnreachableError)
+                else SolveStatus.PREDICTOR_BAD_INPUT
+            )
+            report = SolveReport(status, str(error), build_time=time.perf_counter() - begin)
+            return PredictedLift2D.failed(lift.lift_id, box.mass, duration, report), None
+        return self._solve(task, begin)
+
+    def _solve(
+        self, task: LiftTask2D, begin: float
+    ) -> tuple[PredictedLift2D, LiftComparison | None]:
+        grid = self.programme.grid
+        starts = make_starts(task, grid.spline)
+        build_time = time.perf_counter() - begin
+        deadline = begin + self.options.time_limit
+        vector = task.parameters.pack()
+        optima = self._solver(grid).solve_all(vector, task.bounds, starts, deadline)
+        check: Verification | None = None
+        for _ in range(self.options.refinements + 1):
+            best = optima[0]
+            if not best.converged:
+                break
+            check = verify(
+                self.programme.functions['report'], grid, best.control, task.parameters, task.bounds
+            )
+            if check.passed or time.perf_counter() > deadline:
+                break
+            grid = Grid(grid.n_control, 2 * grid.n_nodes - 1)
+            again = self._solver(grid).solve_all(vector, task.bounds, [best.as_start()], deadline)
+            optima = (*again, *optima) if again[0].converged else (again[0], *optima)
+        status, message = _judge(optima[0], check)
+        notes = (*task.notes, self.programme.how)
+        report = SolveReport(
+            status,
+            '; '.join((message, *notes)),
+            iterations=sum(run.iterations for run in optima),
+            objective=optima[0].objective,
+            primal_residual=optima[0].violation,
+            dual_residual=max(optima[0].stationarity, optima[0].complementarity),
+            build_time=build_time,
+            solve_time=time.perf_counter() - begin - build_time,
+        )
+        if status is not SolveStatus.OK:
+            failed = PredictedLift2D.failed(
+                task.lift_id, task.parameters.box_mass, task.parameters.duration, report, optima,
+                check, notes,
+            )  # fmt: skip
+            return failed, None
+        return self._result(task, report, optima, check, notes)
+
+    def _result(
+        self,
+        task: LiftTask2D,
+        report: SolveReport,
+        optima: tuple[Optimum, ...],
+        check: Verification | None,
+        notes: tuple[str, ...],
+    ) -> tuple[PredictedLift2D, LiftComparison]:
+        parameters = task.parameters
+        function = self.programme.functions['report']
+        times = sample_times(parameters.duration)
+        s = times / parameters.duration
+        q, dq, ddq = sample(self.programme.grid.spline, optima[0].control, s, parameters.duration)
+        loads = evaluate(function, q, dq, ddq, parameters)
+        low, high = (np.full((len(s), 1), bound) for bound in task.person.mtp_limits)
+        lift = Lift(
+            lift_id=task.lift_id,
+            source='predicted',
+            start=task.start,
+            end=task.start + parameters.duration,
+            box_mass=parameters.box_mass,
+            motion=body_motion(task, task.start + times, q, dq, ddq, loads),
+            report=report,
+        )
+        predicted = PredictedLift2D(
+            lift_id=task.lift_id,
+            box_mass=parameters.box_mass,
+            duration=parameters.duration,
+            report=report,
+            lift=lift,
+            torque_names=TORQUE_NAMES,
+            torque=np.column_stack((loads.torque, mtp_torque(task, loads))),
+            torque_lower=np.hstack((loads.lower, low)),
+            torque_upper=np.hstack((loads.upper, high)),
+            zmp=loads.zmp,
+            support=np.array(parameters.support),
+            optima=optima,
+            verification=check,
+            notes=notes,
+        )
+        comparison = compare(function, task, times, q, loads, optima[0].objective)
+        return predicted, comparison
+
+    def _solver(self, grid: Grid) -> LiftSolver:
+        if grid not in self._solvers:
+            programme = self.programme
+            if grid != programme.grid:
+                programme = build_programme(grid, compile_missing=False)
+            self._solvers[grid] = LiftSolver(programme, self.options.time_limit)
+        return self._solvers[grid]
+
+
+def _judge(best: Optimum, check: Verification | None) -> tuple[SolveStatus, str]:
+    if best.converged and check is not None and check.passed:
+        return SolveStatus.OK, f'optimal from the start "{best.start}"'
+    if best.converged and check is not None:
+        return (
+            SolveStatus.PREDICTOR_VERIFICATION_FAILED,
+            f'between the nodes constraints are violated: {check.failures()}',
+        )
+    detail = f'largest violation: {best.violated or "none"} ({best.violation:.3g})'
+    if best.outcome == TIMED_OUT:
+        return SolveStatus.PREDICTOR_NOT_CONVERGED, f'time limit reached; {detail}'
+    if best.outcome == INFEASIBLE:
+        return SolveStatus.PREDICTOR_INFEASIBLE, f'no feasible motion was found; {detail}'
+    return SolveStatus.PREDICTOR_NOT_CONVERGED, f'IPOPT: {best.outcome}; {detail}'

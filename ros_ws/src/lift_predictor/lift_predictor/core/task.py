@@ -1,0 +1,268 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""The task of one recorded lift: what the programme needs to know about box, feet, postures and time (section 4.3)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+from human_model.motion import BodyMotion, Lift
+from numpy.typing import NDArray
+
+from lift_predictor.core.exceptions import AsymmetricLiftError, TaskError, UnreachableError
+from lift_predictor.core.kinematics import chain_positions, reach
+from lift_predictor.core.nlp import LiftBounds
+from lift_predictor.core.parameters import JOINTS, LiftParameters
+from lift_predictor.core.person import Person
+from lift_predictor.core.sagittal import SagittalMotion, SagittalPlane, sagittal_motion
+
+Array = NDArray[np.float64]
+
+POSTURE_TOLERANCE: Final = 0.15
+"""Epsilon of equation 4.8 [rad]."""
+REACHED: Final = 1e-4
+"""Distance of the grip from its target that counts as reached [m]."""
+INSTANTS: Final = ('start', 'middle', 'end')
+
+
+@dataclass(frozen=True)
+class Box:
+    """What is lifted.
+
+    Attributes
+    ----------
+    mass : float
+        [kg]; 0: nothing is lifted.
+    depth : float
+        Extent forward [m] (twice r2 of equation 4.5).
+    start, end : array, shape (3,), or None
+        Centre before and after the lift in the laboratory [m]; None: as recorded.
+    """
+
+    mass: float
+    depth: float = 0.0
+    start: Array | None = None
+    end: Array | None = None
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.mass) and self.mass >= 0.0):
+            raise TaskError(f'box.mass = {self.mass} kg: a mass of at least 0 is needed')
+        if not (np.isfinite(self.depth) and self.depth >= 0.0):
+            raise TaskError(f'box.depth = {self.depth} m: a length of at least 0 is needed')
+        for name in ('start', 'end'):
+            place = getattr(self, name)
+            if place is not None and not np.all(np.isfinite(place)):
+                raise TaskError(f'box.{name} = {np.asarray(place).tolist()}: not finite')
+
+
+@dataclass(frozen=True, eq=False)
+class LiftTask2D:
+    """One lift to predict.
+
+    Attributes
+    ----------
+    lift_id : str
+        Of the recorded lift.
+    start : float
+        Start of the lift on the recording's clock [s].
+    person : Person
+        Who lifts.
+    plane : SagittalPlane
+        Where in the laboratory.
+    measured : SagittalMotion
+        The recorded lift seen from the side.
+    parameters : LiftParameters
+        Numbers of person and task.
+    bounds : LiftBounds
+        Demands of the task.
+    ends : array, shape (2, 6)
+        Postures at start and end that reach the box [rad].
+    notes : tuple of str
+        What had to be adapted, in words.
+    """
+
+    lift_id: str
+    start: float
+    person: Person
+    plane: SagittalPlane
+    measured: SagittalMotion
+    parameters: LiftParameters
+    bounds: LiftBounds
+    ends: Array
+    notes: tuple[str, ...]
+
+
+def build_task(
+    person: Person, lift: Lift, box: Box, posture_tolerance: float = POSTURE_TOLERANCE
+) -> LiftTask2D:
+    """Build the task of a recorded lift.
+
+    Parameters
+    ----------
+    person : Person
+        Who lifted.
+    lift : Lift
+        The recorded lift, on either skeleton.
+    box : Box
+        What was lifted.
+    posture_tolerance : float
+        Epsilon of equation 4.8 [rad].
+
+    Raises
+    ------
+    TaskError
+        The recording has no usable feet, postures or samples.
+    AsymmetricLiftError
+        Right and left differ, or trunk or box turn out of the sagittal plane, by more than the posture tolerance.
+    UnreachableError
+        A hand target cannot be met within joint limits and posture tolerance.
+    """
+    motion = lift.window
+    plane = SagittalPlane.of(motion)
+    measured = sagittal_motion(motion, lift.start, person.neutral, plane)
+    duration = lift.end - lift.start
+    instants = np.array([0.0, 0.5, 1.0]) * duration
+    _require_symmetry(motion, plane, measured, instants, box, posture_tolerance)
+    ankle, support = _feet(motion, plane)
+    from_hand = _box_from_hand(motion, plane, measured)
+    parameters = LiftParameters(
+        body=person.body,
+        strength_lower=person.strength_lower,
+        strength_upper=person.strength_upper,
+        circle=person.circle if box.depth > 0.0 else np.zeros_like(person.circle),
+        ankle=ankle,
+        support=support,
+        ground_height=float(ankle[1] - person.ankle_height),
+        gravity=person.gravity,
+        duration=duration,
+        box_mass=box.mass,
+        box_radius=0.5 * box.depth,
+        box_from_hand=from_hand,
+    )
+    parameters, notes = _fit_circles(parameters, measured)
+    postures = np.stack([np.interp(instants, measured.time, column) for column in measured.q.T], 1)
+    hand = np.stack([_at(measured, measured.grip, t) for t in instants[[0, 2]]])
+    for row, place in enumerate((box.start, box.end)):
+        if place is not None:
+            hand[row] = plane.into(np.asarray(place, dtype=float)) - from_hand
+    bounds = _bounds(person, postures, posture_tolerance, hand)
+    ends = _reachable_ends(bounds, postures, parameters)
+    return LiftTask2D(
+        lift.lift_id, lift.start, person, plane, measured, parameters, bounds, ends, notes
+    )
+
+
+def _at(measured: SagittalMotion, values: Array, time: float) -> Array:
+    return np.array([np.interp(time, measured.time, column) for column in values.T])
+
+
+def _require_symmetry(
+    motion: BodyMotion,
+    plane: SagittalPlane,
+    measured: SagittalMotion,
+    instants: Array,
+    box: Box,
+    tolerance: float,
+) -> None:
+    """Refuse lifts whose sides lie further from their mean than the posture may (equation 4.8)."""
+    for when, time in zip(INSTANTS, instants, strict=True):
+        half = 0.5 * np.abs(_at(measured, measured.side_difference, time))
+        worst = int(np.argmax(half))
+        if half[worst] > tolerance:
+            raise AsymmetricLiftError(
+                f'{JOINTS[worst]}: right and left are {np.degrees(2.0 * half[worst]):.0f} deg apart at the {when} of the '
+                f'lift; the sagittal model allows {np.degrees(2.0 * tolerance):.0f} deg'
+            )
+    turn = plane.rotation().T
+    across = (motion.point('shoulder_l') - motion.point('shoulder_r')) @ turn.T
+    twist = np.abs(np.arctan2(across[:, 0], across[:, 1]))
+    ankles = 0.5 * (motion.point('ankle_r') + motion.point('ankle_l'))
+    hands = 0.5 * (motion.point('hand_r') + motion.point('hand_l'))
+    reach_out = (hands - ankles) @ turn.T
+    aside = np.abs(np.arctan2(reach_out[:, 1], np.abs(reach_out[:, 0])))
+    checks = {'the line of the shoulders': twist}
+    if box.mass > 0.0:
+        checks['the grip, seen from the ankles,'] = aside
+    for what, angle in checks.items():
+        if angle.max() > tolerance:
+            raise AsymmetricLiftError(
+                f'{what} turns {np.degrees(angle.max()):.0f} deg out of the sagittal plane; the sagittal model allows '
+                f'{np.degrees(tolerance):.0f} deg'
+            )
+
+
+def _feet(motion: BodyMotion, plane: SagittalPlane) -> tuple[Array, Array]:
+    """Mean ankle (forward, up), and rear and front edge of the foot support region."""
+    points = {
+        name: np.stack([plane.into(motion.point(f'{name}_{side}')) for side in 'rl'])
+        for name in ('heel', 'toe', 'ankle')
+    }
+    rear = points['heel'][..., 0]
+    front = points['toe'][..., 0]
+    for side, name in enumerate(('right', 'left')):
+        if rear[side].max() >= front[side].min():
+            raise TaskError(
+                f'the {name} foot moves {np.ptp(rear[side]):.2f} m during the lift: the feet must stay (equation 4.4)'
+            )
+    support = np.array([rear.mean(axis=1).min(), front.mean(axis=1).max()])
+    return points['ankle'].mean(axis=(0, 1)), support
+
+
+def _box_from_hand(motion: BodyMotion, plane: SagittalPlane, measured: SagittalMotion) -> Array:
+    """Mean of box centre minus grip; zero where no box is tracked."""
+    box = plane.into(motion.box_position)
+    tracked = np.all(np.isfinite(box), axis=1)
+    if not tracked.any():
+        return np.zeros(2)
+    return np.asarray((box - measured.grip)[tracked].mean(axis=0))
+
+
+def _fit_circles(
+    parameters: LiftParameters, measured: SagittalMotion
+) -> tuple[LiftParameters, tuple[str, ...]]:
+    """Shrink circles the recorded lift itself went through: the person was there, so the body is thinner."""
+    gaps = chain_positions(measured.q, parameters, measured.grip).gaps.min(axis=0)
+    circle = parameters.circle.copy()
+    used = circle[:, 2] > 0.0
+    deep = used & (gaps < 0.0)
+    circle[deep, 2] = np.maximum(circle[deep, 2] + gaps[deep], 0.0)
+    if not deep.any():
+        return parameters, ()
+    note = (
+        f'{int(deep.sum())} of {int(used.sum())} collision circles were reduced, as the recorded lift came up to '
+        f'{-1e3 * gaps[deep].min():.0f} mm closer'
+    )
+    return replace(parameters, circle=circle), (note,)
+
+
+def _bounds(person: Person, postures: Array, tolerance: float, hand: Array) -> LiftBounds:
+    lower = np.maximum(postures - tolerance, person.angle_lower)
+    upper = np.minimum(postures + tolerance, person.angle_upper)
+    for row, when in enumerate(INSTANTS):
+        for column, joint in enumerate(JOINTS):
+            if lower[row, column] > upper[row, column]:
+                low, high = person.angle_lower[column], person.angle_upper[column]
+                raise TaskError(
+                    f'{joint} at the {when} of the lift: {np.degrees(postures[row, column]):.1f} deg is outside its '
+                    f'limits of {np.degrees(low):.1f} to {np.degrees(high):.1f} deg'
+                )
+    return LiftBounds(person.angle_lower, person.angle_upper, lower, upper, hand)
+
+
+def _reachable_ends(bounds: LiftBounds, postures: Array, parameters: LiftParameters) -> Array:
+    ends = []
+    for row, instant in enumerate((0, 2)):
+        lower, upper = bounds.posture_lower[instant], bounds.posture_upper[instant]
+        posture, distance = reach(bounds.hand[row], postures[instant], lower, upper, parameters)
+        if distance > REACHED:
+            span = upper - lower
+            at_bound = (posture - lower < 0.01 * span) | (upper - posture < 0.01 * span)
+            raise UnreachableError(
+                f'hand position (4.6) at the {INSTANTS[instant]}: the grip stays {1e3 * distance:.0f} mm from '
+                f'forward {bounds.hand[row, 0]:.3f} m, up {bounds.hand[row, 1]:.3f} m; joints at the end of the posture '
+                f'tolerance or of their range: {", ".join(np.array(JOINTS)[at_bound]) or "none"}'
+            )
+        ends.append(posture)
+    return np.stack(ends)

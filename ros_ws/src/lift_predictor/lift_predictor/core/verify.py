@@ -1,0 +1,114 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Check of a solution between the nodes, on a dense time grid."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lift_predictor.core.evaluation import evaluate, sample
+from lift_predictor.core.kinematics import chain_positions
+from lift_predictor.core.nlp import Grid, LiftBounds
+from lift_predictor.core.parameters import JOINTS, LiftParameters
+
+Array = NDArray[np.float64]
+
+DENSITY: Final = 10
+"""Dense points per node interval."""
+
+TOLERANCE: Final[dict[str, float]] = {
+    'joint_angle [rad]': 1e-3,
+    'joint_torque [N m]': 0.5,
+    'balance [m]': 1e-3,
+    'collision [m]': 1e-3,
+    'hand_position [m]': 1e-4,
+    'static_ends [rad/s]': 1e-6,
+    'posture [rad]': 1e-3,
+}
+"""Largest violation that passes: below what motion capture and force plates resolve (1 mm, 0.06 deg, 0.5 N m)."""
+
+
+@dataclass(frozen=True)
+class Verification:
+    """Largest violation of each constraint family on the dense grid.
+
+    Attributes
+    ----------
+    n_points : int
+        Points of the dense grid.
+    violation : dict of float
+        By the names of `TOLERANCE`, whose unit is in brackets; 0: none.
+    worst : dict of str
+        What is violated most in each family, and when; empty: nothing.
+    """
+
+    n_points: int
+    violation: dict[str, float]
+    worst: dict[str, str]
+
+    @property
+    def passed(self) -> bool:
+        """Whether every family is within its tolerance."""
+        return all(self.violation[name] <= limit for name, limit in TOLERANCE.items())
+
+    def failures(self) -> str:
+        """Families beyond their tolerance, in words."""
+        return '; '.join(
+            f'{name}: {self.violation[name]:.3g} ({self.worst[name]})'
+            for name, limit in TOLERANCE.items()
+            if self.violation[name] > limit
+        )
+
+
+def verify(
+    report: Any, grid: Grid, control: Array, parameters: LiftParameters, bounds: LiftBounds
+) -> Verification:
+    """Evaluate all constraints on `DENSITY` times as many points as the grid has node intervals.
+
+    Parameters
+    ----------
+    report : casadi.Function
+        `Programme.functions['report']`.
+    grid : Grid
+        Of the solution.
+    control : array, shape (n_free, 6)
+        Free control values [rad].
+    parameters, bounds
+        Person and task.
+    """
+    s = np.linspace(0.0, 1.0, DENSITY * (grid.n_nodes - 1) + 1)
+    q, dq, ddq = sample(grid.spline, control, s, parameters.duration)
+    loads = evaluate(report, q, dq, ddq, parameters)
+    gaps = chain_positions(q, parameters).gaps
+    rear, front = parameters.support
+    angle = np.maximum(bounds.angle_lower - q, q - bounds.angle_upper)
+    torque = np.maximum(loads.lower - loads.torque, loads.torque - loads.upper)
+    balance = np.maximum(rear - loads.zmp, loads.zmp - front)
+    lifted_off = loads.ground_force[:, 1] <= 0.0
+    balance[lifted_off] = np.inf
+    middle = len(s) // 2
+    posture = np.maximum(
+        bounds.posture_lower - q[[0, middle, -1]], q[[0, middle, -1]] - bounds.posture_upper
+    )
+    hands = np.linalg.norm(loads.centres[[0, -1], -1] - bounds.hand, axis=1)
+
+    families = {
+        'joint_angle [rad]': (angle, JOINTS, s),
+        'joint_torque [N m]': (torque, JOINTS, s),
+        'balance [m]': (balance[:, None], ('zero-moment point',), s),
+        'collision [m]': (-gaps, tuple(f'circle {i + 1}' for i in range(gaps.shape[1])), s),
+        'hand_position [m]': (hands[:, None], ('grip',), s[[0, -1]]),
+        'static_ends [rad/s]': (np.abs(dq[[0, -1]]), JOINTS, s[[0, -1]]),
+        'posture [rad]': (posture, JOINTS, s[[0, middle, -1]]),
+    }
+    violation, worst = {}, {}
+    for name, (excess, labels, times) in families.items():
+        row, column = np.unravel_index(int(np.argmax(excess)), excess.shape)
+        value = max(float(excess[row, column]), 0.0)
+        violation[name] = value
+        worst[name] = f'{labels[column]} at {100.0 * times[row]:.0f} %' if value > 0.0 else ''
+    return Verification(len(s), violation, worst)

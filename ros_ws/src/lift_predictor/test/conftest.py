@@ -1,0 +1,117 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""A lift of the dissertation's subject (section 4.3), made up without the optimiser."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from human_model.motion import Lift
+from human_model.report import SolveReport
+from human_model.subject import Subject
+
+from lift_predictor.core.evaluation import evaluate, sample
+from lift_predictor.core.bspline import RestToRestSpline
+from lift_predictor.core.kinematics import pelvis_motion, reach
+from lift_predictor.core.node_functions import node_functions
+from lift_predictor.core.parameters import JOINTS, LiftParameters
+from lift_predictor.core.person import Person
+from lift_predictor.core.task import Box
+
+BOX_DEPTH, BOX_HEIGHT = 0.238, 0.127
+BOX_GAP, SHELF_GAP, SHELF_HEIGHT = 0.033, 0.305, 0.9
+DURATION = 1.2
+
+MakeLift = Callable[..., Lift]
+
+
+@pytest.fixture(scope='session')
+def subject() -> Subject:
+    return Subject(pseudonym='thesis', sex='male', mass=63.5, stature=1.69, age=31.0)
+
+
+@pytest.fixture(scope='session')
+def person(subject: Subject) -> Person:
+    return Person.of(subject)
+
+
+@pytest.fixture(scope='session')
+def parameters(person: Person) -> LiftParameters:
+    """Feet at the laboratory's origin, 7 kg in the hands."""
+    return lift_parameters(person, 7.0)
+
+
+@pytest.fixture(scope='session')
+def make_lift(person: Person) -> MakeLift:
+    """Return a function that makes a recorded lift on the 2D skeleton."""
+
+    def make(
+        mass: float, shelf_gap: float = SHELF_GAP, shelf_height: float = SHELF_HEIGHT
+    ) -> Lift:
+        parameters = lift_parameters(person, mass)
+        edge = parameters.support[1]
+        floor = np.array([edge + BOX_GAP + BOX_DEPTH / 2, BOX_HEIGHT / 2])
+        shelf = np.array([edge + shelf_gap + BOX_DEPTH / 2, shelf_height + BOX_HEIGHT / 2])
+        low, high = person.angle_lower, person.angle_upper
+        first, _ = reach(floor, np.radians([-40.0, 60, 10, 95, 90, 20]), low, high, parameters)
+        last, _ = reach(shelf, np.radians([0.0, 50, 30, 5, 5, 0]), low, high, parameters)
+        middle = 0.5 * (first + last) + np.radians([-5.0, -25, 10, 10, -15, 0])
+        spline = RestToRestSpline(7)
+        control = np.stack([first, 0.7 * first + 0.3 * middle, middle, 0.7 * last + 0.3 * middle, last])
+        time = np.linspace(0.0, DURATION, round(100 * DURATION) + 1)
+        q, dq, ddq = sample(spline, control, time / DURATION, DURATION)
+        loads = evaluate(node_functions()['report'], q, dq, ddq, parameters)
+        return recorded_lift(person, parameters, time, (q, dq, ddq), loads)
+
+    return make
+
+
+@pytest.fixture(scope='session')
+def make_box() -> Callable[[float], Box]:
+    return lambda mass: Box(mass=mass, depth=BOX_DEPTH if mass > 0.0 else 0.0)
+
+
+def lift_parameters(person: Person, mass: float) -> LiftParameters:
+    neutral = person.neutral
+    ankle = np.array([0.0, person.ankle_height])
+    support = np.array([neutral[name][0] - neutral['ankle_r'][0] for name in ('heel_r', 'toe_r')])
+    return LiftParameters(
+        body=person.body,
+        strength_lower=person.strength_lower,
+        strength_upper=person.strength_upper,
+        circle=person.circle,
+        ankle=ankle,
+        support=support,
+        ground_height=0.0,
+        gravity=person.gravity,
+        duration=DURATION,
+        box_mass=mass,
+        box_radius=BOX_DEPTH / 2,
+        box_from_hand=np.zeros(2),
+    )
+
+
+def recorded_lift(person, parameters, time, coordinates, loads) -> Lift:
+    skeleton, n = person.skeleton, len(time)
+    full = []
+    for joints, root in zip(coordinates, pelvis_motion(*coordinates, parameters), strict=True):
+        block = np.zeros((n, len(skeleton.coordinates)))
+        for column, name in enumerate(JOINTS):
+            block[:, skeleton.index(name)] = joints[:, column]
+        for column, name in enumerate(('pelvis_tx', 'pelvis_ty', 'pelvis_tilt')):
+            block[:, skeleton.index(name)] = root[:, column]
+        full.append(block)
+    ground = np.zeros((n, 2, 3))
+    ground[:, :, 0] = 0.5 * loads.ground_force[:, :1]
+    ground[:, :, 2] = 0.5 * loads.ground_force[:, 1:]
+    hands = np.zeros((n, 2, 3))
+    hands[:, :, 0] = 0.5 * loads.hand_force[:, :1]
+    hands[:, :, 2] = 0.5 * loads.hand_force[:, 1:]
+    box = np.zeros((n, 3))
+    box[:, [0, 2]] = loads.centres[:, -1]
+    motion = skeleton.body_motion(
+        time, *full, ground_force=ground, hand_force=hands, box_position=box
+    )
+    return Lift('lift_001', 'measured', 0.0, float(time[-1]), parameters.box_mass, motion, SolveReport())
