@@ -160,7 +160,7 @@ def segment_parameters(subject: Subject) -> SegmentParameters:
     names = tuple(bodies)
     sources = {**sources,
                'mass': 'Dumas et al. 2007 fractions, divided by their sum '
-                       f'({_fraction_sum(subject.sex):.3f}) so that the total is the subject\'s',
+                       f'({_fraction_sum(subject.sex):.3f}) to give the mass of the subject',
                'com': 'Dumas et al. 2007, 2015', 'inertia': 'Dumas et al. 2007, 2015'}
     scale = subject.mass / total
     return SegmentParameters(

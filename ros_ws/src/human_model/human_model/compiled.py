@@ -158,8 +158,9 @@ def body_motion(tree: TreeArrays, q: Array, qd: Array, qdd: Array,
 
 
 @numba.njit(cache=True)
-def newton_euler(tree: TreeArrays, q: Array, qd: Array, qdd: Array, wrench: Array,
-                 gravity: float) -> Array:
+def newton_euler(
+        tree: TreeArrays, q: Array, qd: Array, qdd: Array, wrench: Array, gravity: float,
+) -> Array:
     """Generalised forces (n_q,) [N m or N] by recursive Newton-Euler.
 
     ``wrench`` (n_s, 6): external force [N] and its moment about the *world origin* [N m] on each

@@ -51,7 +51,7 @@ class DHRow:
     branch: str
 
     def transform(self, q: float) -> Array:
-        """Transformation T (4, 4) from the parent's frame at coordinate value q [rad or m]."""
+        """Return T (4, 4) from the parent's frame at coordinate value q [rad or m]."""
         theta = self.theta + self.sign * q if self.kind == 'revolute' else self.theta
         d = self.d + self.sign * q if self.kind == 'prismatic' else self.d
         return dh_transform(theta, d, self.a, self.alpha)

@@ -54,7 +54,7 @@ def from_opensim(vector: npt.ArrayLike) -> Array:
 
 
 def to_opensim(vector: npt.ArrayLike) -> Array:
-    """Turn vectors of shape (..., 3) from REP-103 axes into OpenSim's, inverse of `from_opensim`."""
+    """Turn vectors of shape (..., 3) from REP-103 axes into OpenSim's."""
     return _vectors(vector) @ ROS_FROM_OPENSIM
 
 

@@ -125,7 +125,7 @@ class BodyMotion:
                               f'{norm.flat[np.argmax(np.abs(norm - 1.0))]:.4f} is no rotation')
 
     def __len__(self) -> int:
-        """Number of samples."""
+        """Return the number of samples."""
         return int(self.time.size)
 
     def __getitem__(self, index: int | slice) -> 'BodyMotion':

@@ -2,11 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Named subjects: the persons of the thesis, with its own link tables where it prints them.
 
-Table 2.2 (sagittal skeleton) and table 3.2 (3D skeleton) give link lengths and masses; centres of
-mass and, in 3D, inertia tensors are not printed and are taken from the fractions of Dumas et al.
-2007. The Izz of table 2.2 fit a rod about its proximal end (radius of gyration 0.53 to 0.61 of
-the length), so they are read as inertia about the proximal joint. The Izz of table 3.2 name no
-axis and no point (0.74 of the length for the thigh), so they are kept in the data file only.
+Table 2.2 (sagittal skeleton) and table 3.2 (3D skeleton) give link lengths and masses, but no
+centres of mass. The Izz of table 2.2 have radii of gyration of 0.53 to 0.61 of the length, about
+those of a uniform rod about its end (0.577); they are read as inertia about the proximal joint of
+a link with its centre of mass in the middle. (With a centre of mass from Dumas' fractions the
+trunk's printed Izz would leave a negative inertia.) The Izz of table 3.2 name no axis and no
+point (0.74 of the length for the thigh) and are kept in the data file only; there centres of mass
+and inertia tensors come from the fractions of Dumas et al. 2007.
 """
 
 from dataclasses import replace
@@ -20,7 +22,6 @@ from human_model.anthropometry import (
     segment_parameters,
 )
 from human_model.errors import SubjectError
-from human_model.inertia import combine
 from human_model.subject import Subject
 from human_model.tables import length_sum, read_table
 
@@ -55,8 +56,7 @@ def named_parameters(name: str) -> SegmentParameters:
     subject = named_subject(name)
     if name == 'thesis_2d':
         return _thesis_2d(subject)
-    parameters = segment_parameters(subject)
-    return _thesis_3d(parameters) if name == 'thesis_3d' else parameters
+    return _thesis_3d(subject) if name == 'thesis_3d' else segment_parameters(subject)
 
 
 def _lengths(name: str) -> dict[str, float]:
@@ -69,53 +69,45 @@ def _lengths(name: str) -> dict[str, float]:
 
 
 def _thesis_2d(subject: Subject) -> SegmentParameters:
-    """Masses and Izz of table 2.2; centres of mass at Dumas' fraction of each link.
+    """Masses and Izz of table 2.2, centres of mass in the middle of each link.
 
     The pelvis has no mass of its own: link 1 reaches from the sacrum, where the hips are too.
+    Only the moment of inertia about the lateral axis acts in the plane; the others keep Dumas'
+    proportion to it.
     """
-    generic = replace(subject, lengths={})
-    sagittal = sagittal_parameters(segment_parameters(generic))
-    upper_body = sagittal_parameters(_pelvis_in_trunk(segment_parameters(generic)))
+    generic = sagittal_parameters(segment_parameters(replace(subject, lengths={})))
+    lengths = segment_lengths(subject)[0]
     printed = {row['segment']: row for row in read_table('thesis_2d_links')}
-    own, long = segment_lengths(subject)[0], sagittal.lengths
-    reach = {'trunk': ('t12l1_height', 'shoulder_height'), 'upper_arm': ('upper_arm',),
-             'forearm': ('forearm',), 'thigh': ('thigh',), 'shank': ('shank',),
-             'foot': ('ankle_mtp',), 'toes': ('toes',)}
-    n = len(sagittal.segments)
+    n = len(generic.segments)
     mass, com, inertia = np.zeros(n), np.zeros((n, 3)), np.zeros((n, 3, 3))
-    for i, segment in enumerate(sagittal.segments):
+    for i, segment in enumerate(generic.segments):
         if segment == 'pelvis':
             continue
-        source = upper_body if segment == 'trunk' else sagittal
-        scale = sum(own[key] for key in reach[segment]) / sum(long[key] for key in reach[segment])
         mass[i] = float(printed[segment]['mass'])
-        along = 0 if segment in ('foot', 'toes') else 2
-        com[i, along] = source.com[i, along] * scale
-        about_joint = float(printed[segment]['inertia_zz'])
-        tensor = source.inertia[i]
-        inertia[i] = tensor * ((about_joint - mass[i] * com[i] @ com[i]) / tensor[1, 1])
+        half = float(printed[segment]['length']) / 2
+        if segment in ('foot', 'toes'):
+            com[i, 0] = half
+        else:
+            com[i, 2] = half if segment == 'trunk' else -half
+        central = float(printed[segment]['inertia_zz']) - mass[i] * half**2
+        inertia[i] = generic.inertia[i] * (central / generic.inertia[i, 1, 1])
     return SegmentParameters(
-        own, sagittal.segments, mass, com, inertia,
-        {**{key: 'thesis tables 2.2 and 3.2' for key in own}, 'mass': 'thesis table 2.2',
-         'com': 'Dumas et al. 2007 fraction of the link', 'inertia': 'thesis table 2.2'})
+        lengths, generic.segments, mass, com, inertia,
+        {**dict.fromkeys(lengths, 'thesis tables 2.2 and 3.2, ANSUR II where they are silent'),
+         'mass': 'thesis table 2.2', 'com': 'middle of the link',
+         'inertia': 'thesis table 2.2, about the proximal joint'})
 
 
-def _pelvis_in_trunk(parameters: SegmentParameters) -> SegmentParameters:
-    """Parameters whose lumbar segment carries the pelvis, rigidly, in the neutral posture."""
-    pelvis, lumbar = parameters.index('pelvis'), parameters.index('lumbar')
-    lengths = parameters.lengths
-    down = -np.array([lengths['l5s1_forward'], 0.0, lengths['l5s1_height']])
-    parts = [(float(parameters.mass[i]), parameters.com[i] + at, parameters.inertia[i])
-             for i, at in ((pelvis, down), (lumbar, np.zeros(3)))]
-    mass, com, inertia = (np.array(array) for array in
-                          (parameters.mass, parameters.com, parameters.inertia))
-    mass[lumbar], com[lumbar], inertia[lumbar] = combine(parts)
-    mass[pelvis], com[pelvis], inertia[pelvis] = 0.0, np.zeros(3), np.zeros((3, 3))
-    return replace(parameters, mass=mass, com=com, inertia=inertia)
+def _thesis_3d(subject: Subject) -> SegmentParameters:
+    """Masses of table 3.2; the torso (links 2 and 4) divided as Dumas divides it.
 
-
-def _thesis_3d(parameters: SegmentParameters) -> SegmentParameters:
-    """Masses of table 3.2; the torso (links 2 and 4) divided as Dumas divides it."""
+    The printed foot (0.1 m to the metatarsal joint, 0.165 m from there to the toe) is no shape
+    Dumas' foot can be divided into, so foot and toes keep the generic foot's centres of mass and,
+    scaled by mass, its inertia.
+    """
+    body = {name: value for name, value in subject.lengths.items()
+            if name not in ('ankle_mtp', 'toes')}
+    parameters = segment_parameters(replace(subject, lengths=body))
     link = {row['link']: float(row['mass']) for row in read_table('thesis_3d_links')}
     torso = link['L2'] + link['L4']
     share = parameters.mass / parameters.mass[parameters.index('lumbar')]
@@ -127,5 +119,6 @@ def _thesis_3d(parameters: SegmentParameters) -> SegmentParameters:
         masses[f'{name}_r'] = masses[f'{name}_l'] = link[key]
     mass = np.array([masses[name] for name in parameters.segments])
     inertia = parameters.inertia * (mass / parameters.mass)[:, None, None]
-    return replace(parameters, mass=mass, inertia=inertia,
-                   sources={**parameters.sources, 'mass': 'thesis table 3.2'})
+    lengths, sources = segment_lengths(subject)
+    return replace(parameters, lengths=lengths, mass=mass, inertia=inertia,
+                   sources={**parameters.sources, **sources, 'mass': 'thesis table 3.2'})

@@ -97,7 +97,7 @@ def augmented_inertia(chain: Chain, parameters: SegmentParameters) -> tuple[Arra
 
 
 def recursive_dynamics(chain: Chain, parameters: SegmentParameters, q: npt.ArrayLike,
-                       qd: npt.ArrayLike, qdd: npt.ArrayLike, wrench: Array | None = None,
+                       qd: npt.ArrayLike, qdd: npt.ArrayLike, *, wrench: Array | None = None,
                        gravity: float = GRAVITY) -> Array:
     """Generalised forces (n_q,) [N m; N] by the recursion from the tips inward (2.5 to 2.9).
 

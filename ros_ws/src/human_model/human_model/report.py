@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""The account every solver gives of its result: whether it is good data, and how it was reached."""
+"""The account every solver gives of its result: whether it is good data and how it got there."""
 
 from dataclasses import asdict, dataclass
 from enum import IntEnum

@@ -37,7 +37,9 @@ _CONSTANT = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0)
 
 def _exp(value: Any) -> Any:
     """Exponential of the argument's own type: a CasADi expression stays one."""
-    return np.exp(value) if isinstance(value, (float, int, np.ndarray, np.generic)) else value.exp()
+    if isinstance(value, (float, int, np.ndarray, np.generic)):
+        return np.exp(value)
+    return value.exp()
 
 
 def peak(x: Any, centre: Any, width: Any) -> Any:
@@ -50,7 +52,7 @@ def peak(x: Any, centre: Any, width: Any) -> Any:
 
 
 def peak_slope(x: Array, centre: float, width: float) -> Array:
-    """Derivative of `peak` with respect to x."""
+    """Differentiate `peak` with respect to x."""
     u = (np.asarray(x, dtype=np.float64) - centre) / width
     return np.asarray(-peak(u, 0.0, 1.0) * np.tanh(u / 2.0) / width)
 
@@ -74,7 +76,7 @@ def surface(coefficients: Any, q: Any, v: Any) -> Any:
 
 
 def surface_gradient(coefficients: npt.ArrayLike, q: Array, v: Array) -> tuple[Array, Array]:
-    """Derivatives of `surface` with respect to q and to v."""
+    """Differentiate `surface` with respect to q and to v."""
     c = np.asarray(coefficients, dtype=np.float64)
     angle, speed = peak(np.asarray(q), c[2], c[3]), peak(np.asarray(v), c[5], c[6])
     return (np.asarray((c[1] + c[7] * speed) * peak_slope(q, c[2], c[3])),
@@ -151,7 +153,7 @@ class JointStrength:
         self._bounds = bounds
 
     def bound(self, coordinate: str, side: str) -> StrengthBound:
-        """The 'upper' or 'lower' limit of one coordinate."""
+        """Return the 'upper' or 'lower' limit of one coordinate."""
         if coordinate not in self._bounds or side not in ('upper', 'lower'):
             raise StrengthError(f'{self.skeleton}: no {side} strength of {coordinate!r}')
         return self._bounds[coordinate][side]

@@ -5,7 +5,7 @@
 import csv
 import re
 from collections.abc import Mapping
-from functools import lru_cache
+from functools import cache
 from importlib.resources import files
 
 from human_model.errors import HumanModelError
@@ -13,7 +13,7 @@ from human_model.errors import HumanModelError
 _TERM = re.compile(r'([+-]?)\s*([A-Za-z0-9_.]+)')
 
 
-@lru_cache(maxsize=None)
+@cache
 def read_table(name: str) -> tuple[Mapping[str, str], ...]:
     """Rows of ``data/<name>.csv`` by column.
 

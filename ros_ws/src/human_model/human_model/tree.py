@@ -102,7 +102,10 @@ def build_tree(chain: Chain, parameters: SegmentParameters) -> TreeArrays:
                          f'{sorted(set(parameters.segments))} of the parameters differ')
     neutral = chain.frames(np.zeros(len(chain.coordinates)))
     body_of_row: dict[int, int] = {-1: -1}
-    parent, kind, axis, position = [], [], [], []
+    parent: list[int] = []
+    kind: list[int] = []
+    axis: list[Array] = []
+    position: list[Array] = []
     for i, row in enumerate(chain.rows):
         if row.kind == 'fixed':
             body_of_row[i] = body_of_row[row.parent]
