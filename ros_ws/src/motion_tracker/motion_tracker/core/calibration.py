@@ -1,0 +1,229 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Marker calibration from a static trial: measured lengths, posture, marker offsets.
+
+The person stands upright with both feet flat. (1) Joint centres follow from landmarks, segment
+lengths from joint centres; the heights of the trunk's joints keep the proportions of the
+anthropometric tables. (2) The posture is fitted to the joint centres and to the landmarks that
+have a place in the marker set; the height of the foot's landmarks over the ankle is not fitted,
+because the feet are known to be flat. (3) Every tracking marker gets the place on its segment
+where it was seen in that posture.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+from human_model.anthropometry import segment_lengths
+from human_model.skeleton_3d import Skeleton3D
+from human_model.subject import Calibration, Subject
+
+from motion_tracker.core.errors import CalibrationError
+from motion_tracker.core.inverse_kinematics import IKSettings, InverseKinematics
+from motion_tracker.core.joint_centres import (
+    SEGMENT_OF_JOINT,
+    JointDefinition,
+    joint_centres,
+    load_joint_definitions,
+)
+from motion_tracker.core.marker_model import MarkerModel, from_calibration
+from motion_tracker.core.marker_set import MarkerSet
+
+Array = npt.NDArray[np.float64]
+
+#: Weight of a joint centre in the fit of the posture, against 1 or 2 of a landmark.
+CENTRE_WEIGHT = 10.0
+
+#: A static trial whose markers move more than this (standard deviation) is not static [m].
+LARGEST_SWAY = 0.02
+
+#: The trunk's lengths, which are scaled together.
+_TRUNK = ('l5s1_forward', 'l5s1_height', 't12l1_forward', 't12l1_height', 'shoulder_forward',
+          'shoulder_height', 'c7_forward', 'c7_height')
+
+#: Frames of the static trial the calibrated model is tried on.
+_CHECKED_FRAMES = 20
+
+
+@dataclass(frozen=True, eq=False)
+class StaticCalibration:
+    """Result of a static trial.
+
+    Attributes
+    ----------
+    calibration : Calibration
+        Offsets, lengths, and the root mean square residual of the calibrated model in the trial.
+    posture : ndarray (n_q,)
+        Coordinates in the trial [rad or m].
+    landmark_rms, landmark_max : float
+        Distance of joint centres and landmarks from their anatomical places [m]: how well the
+        tables' anatomy fits this person.
+    joint_centres : mapping of str to ndarray (3,)
+        World [m].
+    statements : tuple of str
+        What was measured and what was assumed, for the report.
+    """
+
+    calibration: Calibration
+    posture: Array
+    landmark_rms: float
+    landmark_max: float
+    joint_centres: Mapping[str, Array]
+    statements: tuple[str, ...]
+
+
+def calibrate(marker_set: MarkerSet, names: Sequence[str], positions: npt.ArrayLike,
+              subject: Subject) -> StaticCalibration:
+    """Calibrate from a static trial.
+
+    Parameters
+    ----------
+    marker_set
+        Set the names belong to.
+    names
+        Markers of the trial, n.
+    positions
+        Shape (frames, n, 3), REP-103 world [m]; NaN where not seen.
+    subject
+        The person; its own ``lengths`` are kept, its ``calibration`` is not used.
+
+    Raises
+    ------
+    CalibrationError
+        If the trial moves, is not in metres, or a marker that is needed was never seen.
+    """
+    array = np.asarray(positions, dtype=np.float64)
+    if array.ndim != 3 or array.shape[1:] != (len(names), 3) or not len(array):
+        raise CalibrationError(f'static trial: positions (frames, {len(names)}, 3) are needed, '
+                               f'got {array.shape}')
+    mean = _mean_positions(names, array)
+    known = {name: mean[name] for name in mean if name in marker_set.names}
+    statements = [f'static trial of {len(array)} frames, {len(known)} markers of '
+                  f'{marker_set.name}']
+    ignored = sorted(set(mean) - set(known))
+    if ignored:
+        statements.append(f'markers not in {marker_set.name}, ignored: {", ".join(ignored)}')
+    absent = [m.name for m in marker_set.markers if m.tracking and m.name not in known]
+    if absent:
+        statements.append(f'tracking markers not in the static trial: {", ".join(absent)}')
+    definitions = load_joint_definitions(marker_set.name)
+    person = replace(subject, calibration=None)
+    lengths, centres = _measure(marker_set, definitions, known, person)
+    skeleton = Skeleton3D.of(replace(person, lengths={**lengths, **subject.lengths}))
+    posture, rms, worst = _posture(marker_set, skeleton, known, centres)
+    tracked = [m for m in marker_set.markers if m.tracking and m.name in known]
+    frames = skeleton.forward(posture)
+    offsets = np.array([
+        frames[skeleton.segments.index(m.segment), :3, :3].T
+        @ (known[m.name] - frames[skeleton.segments.index(m.segment), :3, 3]) for m in tracked])
+    draft = Calibration(tuple(m.name for m in tracked), tuple(m.segment for m in tracked), offsets,
+                        lengths)
+    residual = _residual(skeleton, draft, marker_set, names, array, posture)
+    statements += [f'{d.joint}: {d.method.replace("_", " ")} of {" ".join(d.markers)} '
+                   f'({d.source})' for d in definitions]
+    statements.append(f'landmarks against anatomy: {1000 * rms:.1f} mm rms, '
+                      f'{1000 * worst:.1f} mm at most; calibrated model in the trial: '
+                      f'{1000 * residual:.1f} mm rms')
+    return StaticCalibration(replace(draft, residual_rms=residual), posture, rms, worst, centres,
+                             tuple(statements))
+
+
+def _mean_positions(names: Sequence[str], array: Array) -> dict[str, Array]:
+    if np.nanmax(np.abs(array)) > 50.0:
+        raise CalibrationError(f'static trial: a coordinate is {np.nanmax(np.abs(array)):.0f} m; '
+                               'the markers seem to be in millimetres')
+    mean = {}
+    for i, name in enumerate(names):
+        seen = array[np.all(np.isfinite(array[:, i]), axis=1), i]
+        if not len(seen):
+            continue
+        sway = float(seen.std(axis=0).max())
+        if sway > LARGEST_SWAY:
+            raise CalibrationError(f'static trial: marker {name!r} moves, its standard deviation '
+                                   f'is {1000 * sway:.0f} mm, more than '
+                                   f'{1000 * LARGEST_SWAY:.0f} mm')
+        mean[name] = seen.mean(axis=0)
+    return mean
+
+
+def _measure(marker_set: MarkerSet, definitions: tuple[JointDefinition, ...],
+             markers: Mapping[str, Array], person: Subject,
+             ) -> tuple[dict[str, float], dict[str, Array]]:
+    """Segment lengths [m] and joint centres [m] of the trial."""
+    predicted = segment_lengths(person)[0]
+    placed = marker_set.positions(predicted)
+    legs = tuple(d for d in definitions if not d.joint.startswith('shoulder'))
+    centres = joint_centres(legs, markers, {})
+    leftward = centres['hip_l'] - centres['hip_r']
+    leftward[2] = 0.0
+    leftward = leftward / np.linalg.norm(leftward)
+    heading = np.stack([np.cross(leftward, [0.0, 0.0, 1.0]), leftward, [0.0, 0.0, 1.0]], axis=1)
+    shoulders = tuple(d for d in definitions if d.joint.startswith('shoulder'))
+    below, breadth = {}, []
+    for definition in shoulders:
+        marker = placed[definition.markers[0]]
+        sign = 1.0 if definition.joint[-1] == 'l' else -1.0
+        joint = np.array([predicted['shoulder_forward'], sign * predicted['shoulder_half_width'],
+                          predicted['shoulder_height']])
+        below[definition.joint] = heading @ (joint - marker)
+        breadth.append(marker[1])
+    centres |= joint_centres(shoulders, markers, below)
+
+    def between(a: str, b: str) -> float:
+        return float(np.mean([np.linalg.norm(centres[f'{a}_{s}'] - centres[f'{b}_{s}'])
+                              for s in 'rl']))
+
+    lengths = {
+        'hip_half_width': float(np.linalg.norm(centres['hip_r'] - centres['hip_l'])) / 2,
+        'thigh': between('hip', 'knee'), 'shank': between('knee', 'ankle'),
+        'upper_arm': between('shoulder', 'elbow'), 'forearm': between('elbow', 'wrist'),
+        'shoulder_half_width':
+            float(np.linalg.norm(centres['shoulder_r'] - centres['shoulder_l'])) / 2,
+    }
+    trunk = float(np.linalg.norm(centres['shoulder_r'] + centres['shoulder_l']
+                                 - centres['hip_r'] - centres['hip_l'])) / 2
+    expected = float(np.hypot(
+        sum(predicted[f'{part}_forward'] for part in ('l5s1', 't12l1', 'shoulder')),
+        sum(predicted[f'{part}_height'] for part in ('l5s1', 't12l1', 'shoulder'))))
+    lengths |= {name: predicted[name] * trunk / expected for name in _TRUNK}
+    return lengths, centres
+
+
+def _posture(marker_set: MarkerSet, skeleton: Skeleton3D, markers: Mapping[str, Array],
+             centres: Mapping[str, Array]) -> tuple[Array, float, float]:
+    """Coordinates of the static trial and the misfit of its landmarks (rms, largest) [m]."""
+    placed = marker_set.positions(skeleton.parameters.lengths)
+    landmarks = [m for m in marker_set.markers if m.name in placed and m.name in markers]
+    joints = sorted(centres)
+    model = MarkerModel(
+        tuple(joints) + tuple(m.name for m in landmarks),
+        tuple(SEGMENT_OF_JOINT[j] for j in joints) + tuple(m.segment for m in landmarks),
+        np.array([np.zeros(3)] * len(joints) + [placed[m.name] for m in landmarks]),
+        np.array([CENTRE_WEIGHT] * len(joints) + [m.weight for m in landmarks]))
+    target = np.array([centres[j] for j in joints] + [markers[m.name] for m in landmarks])
+    flat = skeleton.parameters.lengths
+    for i, m in enumerate(landmarks, len(joints)):
+        if m.segment[:-2] in ('foot', 'toes'):
+            below = 0.0 if m.segment.startswith('foot') else flat['mtp_drop']
+            target[i, 2] = centres[f'ankle_{m.segment[-1]}'][2] + placed[m.name][2] - below
+    loose = IKSettings(max_residual=np.inf, rms_residual=np.inf, max_iterations=200)
+    solution = InverseKinematics(skeleton, model, loose).solve(target)
+    if not solution.ok:
+        raise CalibrationError(f'static trial: the posture could not be fitted: '
+                               f'{solution.message}')
+    return solution.q, solution.rms, solution.maximum
+
+
+def _residual(skeleton: Skeleton3D, draft: Calibration, marker_set: MarkerSet,
+              names: Sequence[str], array: Array, posture: Array) -> float:
+    """Root mean square marker distance [m] of the calibrated model over frames of the trial."""
+    model = from_calibration(draft, marker_set)
+    solver = InverseKinematics(skeleton, model)
+    columns = [list(names).index(name) for name in model.names]
+    every = max(1, len(array) // _CHECKED_FRAMES)
+    squares = []
+    for frame in array[::every]:
+        solution = solver.solve(frame[columns], posture)
+        squares.append(solution.residuals[np.isfinite(solution.residuals)] ** 2)
+    return float(np.sqrt(np.mean(np.concatenate(squares))))

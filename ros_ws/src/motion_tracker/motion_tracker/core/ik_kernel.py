@@ -1,0 +1,248 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Compiled solver of the marker fit: damped Gauss-Newton with bounds, one frame a call.
+
+Minimises over q, lower <= q <= upper,
+
+    sum_i w_i |p_i(q) - x_i|^2  +  sum_j v_j (q_j - r_j)^2  +  sum_k c_k ((1 - s_k) q_a - s_k q_b)^2
+
+with marker positions p, measured positions x, prior r and a share s that the lower of two joints
+takes of their sum. Coordinates at a bound whose gradient points outward are held there
+(Bertsekas 1982, projected Newton); the others take a Levenberg-Marquardt step, which is cut at
+the bounds and accepted only if the objective falls. Everything is summed in a fixed order, so equal
+input gives equal bits.
+"""
+
+import numba
+import numpy as np
+import numpy.typing as npt
+from human_model.compiled import body_frames
+from human_model.tree import TreeArrays
+
+Array = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+_DAMPING_START = 1e-9
+_DAMPING_MAX = 1e6
+
+
+@numba.njit(cache=True)
+def _positions(rotation: Array, origin: Array, body: IntArray, local: Array) -> Array:
+    out = np.empty((body.shape[0], 3))
+    for i in range(body.shape[0]):
+        b = body[i]
+        for r in range(3):
+            out[i, r] = (origin[b, r] + rotation[b, r, 0] * local[i, 0]
+                         + rotation[b, r, 1] * local[i, 1] + rotation[b, r, 2] * local[i, 2])
+    return out
+
+
+@numba.njit(cache=True)
+def _objective(position: Array, target: Array, weight: Array, q: Array, prior: Array,
+               prior_weight: Array, pair: IntArray, share: Array, pair_weight: Array) -> float:
+    total = 0.0
+    for i in range(weight.shape[0]):
+        if weight[i] > 0.0:
+            for r in range(3):
+                total += weight[i] * (position[i, r] - target[i, r]) ** 2
+    for j in range(q.shape[0]):
+        total += prior_weight[j] * (q[j] - prior[j]) ** 2
+    for k in range(pair.shape[0]):
+        split = (1.0 - share[k]) * q[pair[k, 0]] - share[k] * q[pair[k, 1]]
+        total += pair_weight[k] * split * split
+    return total
+
+
+@numba.njit(cache=True)
+def _normal_equations(tree: TreeArrays, origin: Array, axis: Array, position: Array,
+                      body: IntArray, target: Array, weight: Array, hessian: Array,
+                      gradient: Array) -> None:
+    """Add half the gradient and half the Gauss-Newton Hessian of the marker terms."""
+    n_q = gradient.shape[0]
+    path = np.empty(n_q, dtype=np.int64)
+    column = np.empty((n_q, 3))
+    for i in range(weight.shape[0]):
+        w = weight[i]
+        if w <= 0.0:
+            continue
+        count = 0
+        j = body[i]
+        while j >= 0:
+            if tree.kind[j] == 1:
+                column[count] = axis[j]
+            else:
+                x = position[i, 0] - origin[j, 0]
+                y = position[i, 1] - origin[j, 1]
+                z = position[i, 2] - origin[j, 2]
+                column[count, 0] = axis[j, 1] * z - axis[j, 2] * y
+                column[count, 1] = axis[j, 2] * x - axis[j, 0] * z
+                column[count, 2] = axis[j, 0] * y - axis[j, 1] * x
+            path[count] = j
+            count += 1
+            j = tree.parent[j]
+        for a in range(count):
+            dot = 0.0
+            for r in range(3):
+                dot += column[a, r] * (position[i, r] - target[i, r])
+            gradient[path[a]] += w * dot
+            for b in range(a + 1):
+                dot = (column[a, 0] * column[b, 0] + column[a, 1] * column[b, 1]
+                       + column[a, 2] * column[b, 2])
+                # Paths run from the marker to the root, so path[a] < path[b]: lower triangle.
+                hessian[path[b], path[a]] += w * dot
+
+
+@numba.njit(cache=True)
+def _solve_free(hessian: Array, gradient: Array, free: IntArray, damping: float,
+                step: Array) -> bool:
+    """Cholesky solution of (H + damping I) step = -g over the free coordinates."""
+    n = free.shape[0]
+    factor = np.zeros((n, n))
+    y = np.empty(n)
+    for a in range(n):
+        for b in range(a + 1):
+            i, j = free[a], free[b]
+            value = hessian[i, j] if i >= j else hessian[j, i]
+            if a == b:
+                value += damping
+            for k in range(b):
+                value -= factor[a, k] * factor[b, k]
+            if a == b:
+                if value <= 0.0:
+                    return False
+                factor[a, a] = np.sqrt(value)
+            else:
+                factor[a, b] = value / factor[b, b]
+    for a in range(n):
+        value = -gradient[free[a]]
+        for k in range(a):
+            value -= factor[a, k] * y[k]
+        y[a] = value / factor[a, a]
+    for a in range(n - 1, -1, -1):
+        value = y[a]
+        for k in range(a + 1, n):
+            value -= factor[k, a] * y[k]
+        y[a] = value / factor[a, a]
+    step[:] = 0.0
+    for a in range(n):
+        step[free[a]] = y[a]
+    return True
+
+
+@numba.njit(cache=True)
+def _bounded_step(hessian: Array, gradient: Array, free: IntArray, damping: float, q: Array,
+                  lower: Array, upper: Array, step: Array) -> bool:
+    """Step of the free coordinates; those it would take past a bound stop there, one after all.
+
+    The step of the others is solved again with the stopped ones in place, so that a coordinate on
+    its bound does not spoil the direction of the rest.
+    """
+    n_q = q.shape[0]
+    fixed = np.zeros(n_q)
+    loose = free.copy()
+    rhs = gradient.copy()
+    while True:
+        if not _solve_free(hessian, rhs, loose, damping, step):
+            return False
+        count = 0
+        kept = np.empty(loose.shape[0], dtype=np.int64)
+        for i in range(loose.shape[0]):
+            j = loose[i]
+            if q[j] + step[j] < lower[j] or q[j] + step[j] > upper[j]:
+                fixed[j] = (lower[j] if step[j] < 0.0 else upper[j]) - q[j]
+                for k in range(n_q):
+                    rhs[k] += fixed[j] * (hessian[j, k] if j >= k else hessian[k, j])
+            else:
+                kept[count] = j
+                count += 1
+        if count == loose.shape[0]:
+            break
+        loose = kept[:count].copy()
+    for j in range(n_q):
+        step[j] += fixed[j]
+    return True
+
+
+@numba.njit(cache=True)
+def data_curvature(tree: TreeArrays, q: Array, body: IntArray, local: Array,
+                   weight: Array) -> Array:
+    """Diagonal of the Gauss-Newton Hessian of the marker terms (n_q,) [m^2 or 1]."""
+    rotation, origin, axis = body_frames(tree, q)
+    position = _positions(rotation, origin, body, local)
+    hessian = np.zeros((q.shape[0], q.shape[0]))
+    gradient = np.zeros(q.shape[0])
+    _normal_equations(tree, origin, axis, position, body, position, weight, hessian, gradient)
+    return np.diag(hessian).copy()
+
+
+@numba.njit(cache=True)
+def fit(tree: TreeArrays, start: Array, lower: Array, upper: Array, body: IntArray, local: Array,
+        target: Array, weight: Array, prior: Array, prior_weight: Array, pair: IntArray,
+        share: Array, pair_weight: Array, iterations: int, tolerance: float,
+        ) -> tuple[Array, Array, int, bool, float, float]:
+    """Fit one frame.
+
+    Returns coordinates (n_q,), marker positions (n, 3) [m], iterations, whether the last step was
+    below the tolerance [rad or m], objective, and the largest free component of its gradient.
+    """
+    n_q = start.shape[0]
+    q = np.minimum(np.maximum(start, lower), upper)
+    rotation, origin, axis = body_frames(tree, q)
+    position = _positions(rotation, origin, body, local)
+    value = _objective(position, target, weight, q, prior, prior_weight, pair, share, pair_weight)
+    damping = _DAMPING_START
+    step = np.zeros(n_q)
+    converged = False
+    stationarity = np.inf
+    used = 0
+    for used in range(1, iterations + 1):
+        hessian = np.zeros((n_q, n_q))
+        gradient = np.zeros(n_q)
+        _normal_equations(tree, origin, axis, position, body, target, weight, hessian, gradient)
+        for j in range(n_q):
+            hessian[j, j] += prior_weight[j]
+            gradient[j] += prior_weight[j] * (q[j] - prior[j])
+        for k in range(pair.shape[0]):
+            a, b = pair[k, 0], pair[k, 1]
+            s = share[k]
+            split = (1.0 - s) * q[a] - s * q[b]
+            gradient[a] += pair_weight[k] * (1.0 - s) * split
+            gradient[b] -= pair_weight[k] * s * split
+            hessian[a, a] += pair_weight[k] * (1.0 - s) ** 2
+            hessian[b, b] += pair_weight[k] * s**2
+            hessian[max(a, b), min(a, b)] -= pair_weight[k] * s * (1.0 - s)
+        count = 0
+        free = np.empty(n_q, dtype=np.int64)
+        stationarity = 0.0
+        for j in range(n_q):
+            if (q[j] <= lower[j] and gradient[j] > 0.0) or (q[j] >= upper[j] and gradient[j] < 0.0):
+                continue
+            free[count] = j
+            count += 1
+            stationarity = max(stationarity, abs(gradient[j]))
+        accepted = False
+        moved = 0.0
+        while damping <= _DAMPING_MAX:
+            if _bounded_step(hessian, gradient, free[:count], damping, q, lower, upper, step):
+                trial = np.minimum(np.maximum(q + step, lower), upper)
+                rotation, origin, axis = body_frames(tree, trial)
+                position = _positions(rotation, origin, body, local)
+                trial_value = _objective(position, target, weight, trial, prior, prior_weight,
+                                         pair, share, pair_weight)
+                moved = np.max(np.abs(trial - q))
+                if trial_value <= value or moved < tolerance:
+                    accepted = True
+                    q = trial
+                    value = trial_value
+                    damping = max(damping * 0.1, _DAMPING_START)
+                    break
+            damping *= 10.0
+        if not accepted:
+            rotation, origin, axis = body_frames(tree, q)
+            position = _positions(rotation, origin, body, local)
+            damping = _DAMPING_START
+            break
+        if moved < tolerance:
+            converged = True
+            break
+    return q, position, used, converged, value, stationarity

@@ -1,0 +1,324 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Joint coordinates from markers: weighted least squares on the 40-DOF skeleton.
+
+What markers cannot tell is settled by weak priors, whose weights are small against the markers'
+curvature (a marker 0.1 m off the axis counts 0.01 m^2 per unit weight):
+
+- every coordinate but those of the pelvis' place is drawn to the neutral posture;
+- the two spine joints are drawn to share their sum as the lumbar rhythm does
+  (``data/spine_prior.csv``): weakly when the lumbar segment carries a marker; firmly when not,
+  because then only the sum is seen and its split would follow errors of the trunk's lengths;
+- a coordinate that is seen by the full marker set but by no marker of this frame is held at
+  its previous value, and the frame says so.
+"""
+
+import csv
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+import numpy.typing as npt
+from human_model.report import SolveStatus
+from human_model.skeleton import Skeleton
+
+from motion_tracker.core.errors import InverseKinematicsError
+from motion_tracker.core.ik_kernel import data_curvature, fit
+from motion_tracker.core.marker_model import MarkerModel
+from motion_tracker.core.marker_set import DATA
+
+Array = npt.NDArray[np.float64]
+
+_PLACE = ('pelvis_tx', 'pelvis_ty', 'pelvis_tz', 'pelvis_tilt', 'pelvis_list', 'pelvis_rotation')
+
+#: Postures tried when there is no previous frame, as multiples of one (standing, half and deep squat).
+_CROUCH = {'hip_flexion': 1.4, 'knee_angle': 1.5, 'ankle_angle': 0.3}
+_STARTS = (0.0, 0.6, 1.2)
+
+
+@dataclass(frozen=True)
+class IKSettings:
+    """Weights and limits of the fit.
+
+    Attributes
+    ----------
+    neutral_weight : float
+        Of the neutral posture [m^2/rad^2].
+    spine_weight, blind_spine_weight : float
+        Of the lumbar rhythm [m^2/rad^2] with and without a marker on the lumbar segment.
+    held_weight : float
+        Of the previous value of a coordinate that no marker sees in this frame [m^2/rad^2].
+    seen_curvature : float
+        A coordinate counts as seen when the markers' curvature about it exceeds this [m^2/rad^2].
+    max_residual, rms_residual : float
+        A frame whose largest or root mean square distance exceeds this is not good data [m].
+    max_iterations : int
+    tolerance : float
+        Largest last step of a converged fit [rad or m].
+    """
+
+    neutral_weight: float = 1e-5
+    spine_weight: float = 1e-3
+    blind_spine_weight: float = 0.3
+    held_weight: float = 1e-2
+    seen_curvature: float = 1e-3
+    max_residual: float = 0.08
+    rms_residual: float = 0.03
+    max_iterations: int = 60
+    tolerance: float = 1e-7
+
+
+@dataclass(frozen=True, eq=False)
+class IKSolution:
+    """Fit of one frame.
+
+    Attributes
+    ----------
+    q : ndarray (n_q,)
+        Joint coordinates [rad or m].
+    residuals : ndarray (n_markers,)
+        Distance of each marker from the model [m]; NaN where not seen or not used.
+    rms, maximum : float
+        Of the residuals [m]; NaN without markers.
+    used : int
+        Markers used.
+    held : tuple of str
+        Coordinates that no marker saw in this frame.
+    rejected : tuple of str
+        Markers left out as swapped or wrongly labelled.
+    status : SolveStatus
+    message : str
+        Names what is wrong; empty when nothing is.
+    iterations : int
+    objective, stationarity : float
+        Final value [m^2] and largest free gradient component.
+    """
+
+    q: Array
+    residuals: Array
+    rms: float
+    maximum: float
+    used: int
+    held: tuple[str, ...]
+    rejected: tuple[str, ...]
+    status: SolveStatus
+    message: str
+    iterations: int
+    objective: float
+    stationarity: float
+
+    @property
+    def ok(self) -> bool:
+        """Whether the frame is good data."""
+        return self.status is SolveStatus.OK
+
+
+@cache
+def spine_prior() -> tuple[tuple[str, str, float], ...]:
+    """Lower and upper coordinate and the share of their sum the lower one takes."""
+    with (DATA / 'spine_prior.csv').open(newline='', encoding='utf-8') as file:
+        return tuple((row['lower'], row['upper'], float(row['lower_share']))
+                     for row in csv.DictReader(file))
+
+
+class InverseKinematics:
+    """Fit of a skeleton to the markers of a `MarkerModel`.
+
+    Parameters
+    ----------
+    skeleton
+        Of the person, 3D.
+    model
+        Where the markers sit.
+    settings
+        Weights and limits.
+
+    Raises
+    ------
+    InverseKinematicsError
+        If the markers cannot determine the pelvis.
+    """
+
+    def __init__(self, skeleton: Skeleton, model: MarkerModel,
+                 settings: IKSettings | None = None) -> None:
+        self.skeleton = skeleton
+        self.model = model
+        self.settings = settings or IKSettings()
+        tree = skeleton.tree
+        segment = np.array([skeleton.parameters.index(name) for name in model.segments])
+        self._body = np.ascontiguousarray(tree.segment_body[segment], dtype=np.int64)
+        self._local = np.ascontiguousarray(tree.segment_offset[segment] + model.offsets)
+        self._lower = np.ascontiguousarray(skeleton.limits[:, 0])
+        self._upper = np.ascontiguousarray(skeleton.limits[:, 1])
+        place = np.array([name in _PLACE for name in skeleton.coordinates])
+        self._neutral = np.where(place, 0.0, self.settings.neutral_weight)
+        self._place = place
+        prior = [(skeleton.index(a), skeleton.index(b), share) for a, b, share in spine_prior()]
+        self._pair = np.array([[a, b] for a, b, _ in prior], dtype=np.int64)
+        self._share = np.array([share for _, _, share in prior])
+        blind = 'lumbar' not in model.segments
+        self._pair_weight = np.full(len(prior), self.settings.blind_spine_weight if blind
+                                    else self.settings.spine_weight)
+        #: Coordinates seen when all markers are seen.
+        self.seen = self._seen(skeleton.standing(), model.weights)
+        if not self.seen[place].all():
+            lost = [skeleton.coordinates[j] for j in np.flatnonzero(place & ~self.seen)]
+            raise InverseKinematicsError(f'the markers {", ".join(model.names)} do not determine '
+                                         f'{lost[0]}')
+
+    @property
+    def unseen(self) -> tuple[str, ...]:
+        """Coordinates that even the full marker set does not see; they stay at neutral."""
+        return tuple(self.skeleton.coordinates[j] for j in np.flatnonzero(~self.seen))
+
+    def _seen(self, q: Array, weight: Array) -> npt.NDArray[np.bool_]:
+        curvature = data_curvature(self.skeleton.tree, q, self._body, self._local, weight)
+        return np.asarray(curvature > self.settings.seen_curvature)
+
+    def predict(self, q: npt.ArrayLike) -> Array:
+        """Marker positions (n_markers, 3) [m] at coordinates q."""
+        from human_model.compiled import point_positions
+        segment = np.array([self.skeleton.parameters.index(name) for name in self.model.segments])
+        return np.asarray(point_positions(
+            self.skeleton.tree, np.ascontiguousarray(q, dtype=np.float64), segment,
+            np.ascontiguousarray(self.model.offsets)))
+
+    def solve(self, positions: npt.ArrayLike, previous: npt.ArrayLike | None = None,
+              ) -> IKSolution:
+        """Fit one frame.
+
+        Parameters
+        ----------
+        positions
+            Shape (n_markers, 3) in the order of the model's names, world [m]; NaN where not seen.
+        previous
+            Coordinates of the frame before, or None.
+
+        Raises
+        ------
+        InverseKinematicsError
+            If the shape is wrong.
+        """
+        target = np.array(positions, dtype=np.float64)
+        if target.shape != (len(self.model.names), 3):
+            raise InverseKinematicsError(f'positions: shape ({len(self.model.names)}, 3) is '
+                                         f'needed, got {target.shape}')
+        missing = ~np.all(np.isfinite(target), axis=1)
+        weight = np.where(missing, 0.0, self.model.weights)
+        target[missing] = 0.0
+        last = None if previous is None else np.ascontiguousarray(previous, dtype=np.float64)
+        seen = self._seen(self.skeleton.standing() if last is None else last, weight)
+        held = self.seen & ~seen
+        if held[self._place].any() or not weight.any():
+            return self._lost(target, weight, last, held)
+        q, position, iterations, converged, value, stationarity = self._best(
+            target, weight, last, held)
+        distance = np.linalg.norm(position - target, axis=1)
+        rejected: tuple[str, ...] = ()
+        swapped = ''
+        if self._too_far(distance, weight):
+            q, position, weight, rejected, swapped = self._robust(q, target, weight, last, held)
+            distance = np.linalg.norm(position - target, axis=1)
+        residuals = np.where(weight > 0, distance, np.nan)
+        rms = float(np.sqrt(np.nanmean(residuals**2))) if (weight > 0).any() else np.nan
+        maximum = float(np.nanmax(residuals)) if (weight > 0).any() else np.nan
+        status, message = self._judge(converged, rms, maximum, residuals, held, swapped)
+        names = tuple(self.skeleton.coordinates[j] for j in np.flatnonzero(held))
+        return IKSolution(q, residuals, rms, maximum, int((weight > 0).sum()), names, rejected,
+                          status, message, int(iterations), float(value), float(stationarity))
+
+    def _fit(self, start: Array, target: Array, weight: Array, last: Array | None,
+             held: npt.NDArray[np.bool_]) -> tuple[Array, Array, int, bool, float, float]:
+        prior_weight = np.where(held, self.settings.held_weight, self._neutral)
+        prior = np.where(held, last, 0.0) if last is not None else np.zeros_like(start)
+        result: tuple[Array, Array, int, bool, float, float] = fit(
+            self.skeleton.tree, start, self._lower, self._upper, self._body, self._local, target,
+            weight, prior, prior_weight, self._pair, self._share, self._pair_weight,
+            self.settings.max_iterations, self.settings.tolerance)
+        return result
+
+    def _best(self, target: Array, weight: Array, last: Array | None,
+              held: npt.NDArray[np.bool_]) -> tuple[Array, Array, int, bool, float, float]:
+        if last is not None:
+            return self._fit(last, target, weight, last, held)
+        fits = [self._fit(start, target, weight, None, held)
+                for start in self._starts(target, weight)]
+        return min(fits, key=lambda result: result[4])
+
+    def _starts(self, target: Array, weight: Array) -> list[Array]:
+        """Standing and crouching postures with the pelvis where its markers are."""
+        skeleton = self.skeleton
+        starts = []
+        on_pelvis = np.array([name == 'pelvis' for name in self.model.segments]) & (weight > 0)
+        use = on_pelvis if on_pelvis.any() else weight > 0
+        for share in _STARTS:
+            q = skeleton.vector({f'{name}_{side}': value * share
+                                 for name, value in _CROUCH.items() for side in 'rl'})
+            shift = (target[use] - self.predict(q)[use]).mean(axis=0)
+            q += skeleton.vector({'pelvis_tx': shift[0], 'pelvis_ty': shift[2],
+                                  'pelvis_tz': -shift[1]})
+            starts.append(q)
+        return starts
+
+    def _too_far(self, distance: Array, weight: Array) -> bool:
+        seen = distance[weight > 0]
+        return bool(seen.max() > self.settings.max_residual
+                    or np.sqrt(np.mean(seen**2)) > self.settings.rms_residual)
+
+    def _robust(self, q: Array, target: Array, weight: Array, last: Array | None,
+                held: npt.NDArray[np.bool_],
+                ) -> tuple[Array, Array, Array, tuple[str, ...], str]:
+        """Refit without the markers that do not fit; say which of them look exchanged."""
+        scale = self.settings.rms_residual
+        start = q if last is None else last
+        trust = weight
+        position = self.predict(start)
+        for _ in range(8):
+            distance = np.linalg.norm(position - target, axis=1)
+            # Geman and McClure 1987: weight of a redescending estimator.
+            trust = weight / (1.0 + (distance / scale) ** 2) ** 2
+            start, position, *_ = self._fit(start, target, trust, last, held)
+        distance = np.linalg.norm(position - target, axis=1)
+        bad = (weight > 0) & (distance > self.settings.max_residual)
+        good = np.where(bad, 0.0, weight)
+        start, position, *_ = self._fit(start, target, good, last, held)
+        names = self.model.names
+        suspects = np.flatnonzero(bad)
+        found = []
+        for at, a in enumerate(suspects):
+            for b in suspects[at + 1:]:
+                crossed = max(np.linalg.norm(target[a] - position[b]),
+                              np.linalg.norm(target[b] - position[a]))
+                straight = min(np.linalg.norm(target[a] - position[a]),
+                               np.linalg.norm(target[b] - position[b]))
+                if crossed < 0.5 * straight:
+                    found.append(f'{names[a]} and {names[b]} look exchanged (residual '
+                                 f'{straight:.3f} m, {crossed:.3f} m when exchanged)')
+        return start, position, good, tuple(names[i] for i in suspects), '; '.join(found)
+
+    def _judge(self, converged: bool, rms: float, maximum: float, residuals: Array,
+               held: npt.NDArray[np.bool_], swapped: str) -> tuple[SolveStatus, str]:
+        if swapped:
+            return SolveStatus.TRACKER_BAD_INPUT, f'markers {swapped}'
+        if not converged:
+            return SolveStatus.TRACKER_NOT_CONVERGED, 'inverse kinematics did not converge'
+        if not (maximum <= self.settings.max_residual and rms <= self.settings.rms_residual):
+            worst = self.model.names[int(np.nanargmax(residuals))]
+            return (SolveStatus.TRACKER_BAD_INPUT,
+                    f'marker residuals rms {rms:.3f} m, largest {maximum:.3f} m at {worst}')
+        if held.any():
+            names = [self.skeleton.coordinates[j] for j in np.flatnonzero(held)]
+            return (SolveStatus.TRACKER_MARKERS_MISSING,
+                    f'no marker sees {", ".join(names)}: held at the previous value')
+        return SolveStatus.OK, ''
+
+    def _lost(self, target: Array, weight: Array, last: Array | None,
+              held: npt.NDArray[np.bool_]) -> IKSolution:
+        """Answer for a frame whose markers do not even place the pelvis."""
+        q = self.skeleton.standing() if last is None else last.copy()
+        names = tuple(self.skeleton.coordinates[j] for j in np.flatnonzero(held))
+        return IKSolution(
+            q, np.full(len(weight), np.nan), np.nan, np.nan, int((weight > 0).sum()), names, (),
+            SolveStatus.TRACKER_MARKERS_MISSING,
+            f'{int((weight > 0).sum())} of {len(weight)} markers: the pelvis is not determined',
+            0, np.nan, np.nan)
