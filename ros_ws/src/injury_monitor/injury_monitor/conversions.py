@@ -141,7 +141,7 @@ def alarm_to_msg(event: AlarmEvent, filter_delay: float) -> AlarmEventMsg:
         state=int(event.state), previous_state=int(event.previous_state),
         severity=event.severity, value=event.value, limit=event.limit, margin=event.margin,
         unit=event.unit, limit_source=event.limit_source, filter_delay=filter_delay,
-        lift_id=event.lift_id, operator=event.operator, historical=event.historical,
+        lift_id=event.lift_id, operator_id=event.operator, historical=event.historical,
         message=event.message())
     message.header.stamp = to_stamp(event.stamp)
     for field in ('stamp_raised', 'stamp_returned'):

@@ -221,7 +221,7 @@ class InjuryMonitorNode(PipelineNode):
                  AlarmCommandError: ShelveAlarm.Response.NOT_IN_THIS_STATE,
                  ShelveDurationError: ShelveAlarm.Response.DURATION_REFUSED}
         try:
-            events = self.monitor.command(trigger, request.alarm_id, request.operator,
+            events = self.monitor.command(trigger, request.alarm_id, request.operator_id,
                                           duration=duration)
         except tuple(codes) as error:
             response.error_code = codes[type(error)]
