@@ -1,0 +1,199 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Packages describe themselves truly: manifests, entry points, headers, sizes, paths."""
+
+from __future__ import annotations
+
+import ast
+import os
+import re
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+SOURCES = ROOT / 'ros_ws' / 'src'
+PACKAGES = sorted(path.parent for path in SOURCES.glob('*/package.xml'))
+PYTHON_PACKAGES = sorted(path.parent for path in SOURCES.glob('*/setup.py'))
+OWN = {path.name for path in PACKAGES}
+SKIPPED_FOLDERS = {'build', 'install', 'log', 'out', '__pycache__'}
+CODE_SUFFIXES = {'.py', '.sh', '.cmake', '.msg', '.srv', '.action', '.toml', '.xml', '.cfg'}
+TEXT_SUFFIXES = CODE_SUFFIXES | {'.md', '.yaml', '.yml', '.csv', '.json', '.txt', '.in', '.html',
+                                 '.urdf', '.mot', '.sto', '.trc'}
+MAXIMUM_LINES = 400
+HEADER = ('# SPDX-FileCopyrightText: 2026 The lift monitor authors\n'
+          '# SPDX-License-Identifier: Apache-2.0\n')
+
+# Imported module -> rosdep key. lz4 and backports.zstd come with rosbags.
+ROSDEP_KEYS = {
+    'ament_index_python': 'ament_index_python',
+    'backports': 'python3-rosbags-pip',
+    'lz4': 'python3-rosbags-pip',
+    'matplotlib': 'python3-matplotlib',
+    'numba': 'python3-numba',
+    'numpy': 'python3-numpy',
+    'rich': 'python3-rich',
+    'rosbags': 'python3-rosbags-pip',
+    'scipy': 'python3-scipy',
+    'yaml': 'python3-yaml',
+}
+# Only on PyPI and without a rosdep key; the README says how to install them.
+WITHOUT_ROSDEP_KEY = {'casadi', 'ezc3d'}
+STANDARD_LIBRARY = sys.stdlib_module_names | {'compression'}  # compression: from Python 3.14
+# Started as processes by the launch files, or read as installed data; not imported.
+STARTED_BY_BRINGUP = {'motion_tracker', 'lift_predictor', 'muscle_analyzer', 'injury_monitor'}
+
+
+def project_files(suffixes: set[str]) -> Iterator[Path]:
+    for folder, names, files in os.walk(ROOT):
+        names[:] = [name for name in names
+                    if name not in SKIPPED_FOLDERS and not name.startswith('.')]
+        for name in files:
+            if Path(name).suffix in suffixes or name in ('Makefile', 'CMakeLists.txt'):
+                yield Path(folder) / name
+
+
+def manifest(package: Path) -> ElementTree.Element:
+    return ElementTree.parse(package / 'package.xml').getroot()
+
+
+def field(root: ElementTree.Element, tag: str) -> str:
+    element = root.find(tag)
+    assert element is not None and element.text, f'package.xml has no {tag}'
+    return element.text.strip()
+
+
+def dependencies(root: ElementTree.Element, *tags: str) -> set[str]:
+    return {element.text.strip() for tag in tags for element in root.iter(tag) if element.text}
+
+
+def setup_arguments(package: Path) -> dict[str, object]:
+    """Return the literal keyword arguments of setup()."""
+    tree = ast.parse((package / 'setup.py').read_text())
+    call = next(node for node in ast.walk(tree)
+                if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)
+                and node.func.id == 'setup')
+    arguments: dict[str, object] = {}
+    for keyword in call.keywords:
+        try:
+            arguments[str(keyword.arg)] = ast.literal_eval(keyword.value)
+        except ValueError:
+            continue
+    return arguments
+
+
+def imported_modules(package: Path) -> set[str]:
+    """Return the top-level modules that the package and its launch files import."""
+    found = set()
+    for path in [*(package / package.name).rglob('*.py'), *package.glob('launch/*.py')]:
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.Import):
+                found |= {alias.name.split('.')[0] for alias in node.names}
+            elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+                found.add(node.module.split('.')[0])
+    return found - STANDARD_LIBRARY - {package.name}
+
+
+def test_workspace_has_the_packages_of_the_graph() -> None:
+    assert {'lifting_interfaces', 'human_model', 'motion_tracker', 'lift_predictor',
+                   'muscle_analyzer', 'injury_monitor', 'lifting_bringup'} <= OWN
+
+
+@pytest.mark.parametrize('package', PACKAGES, ids=lambda path: path.name)
+def test_manifest_is_complete(package: Path) -> None:
+    root = manifest(package)
+    assert root.get('format') == '3'
+    assert field(root, 'name') == package.name
+    assert field(root, 'license') == 'Apache-2.0'
+    assert field(root, 'version') == '0.1.0'
+    assert len(field(root, 'description')) > 40
+    assert (package / 'README.md').stat().st_size > 200
+
+
+@pytest.mark.parametrize('package', PYTHON_PACKAGES, ids=lambda path: path.name)
+def test_setup_agrees_with_manifest(package: Path) -> None:
+    root, arguments = manifest(package), setup_arguments(package)
+    assert arguments['version'] == field(root, 'version')
+    assert arguments['license'] == field(root, 'license')
+    assert arguments['description'] == field(root, 'description')
+    assert (package / 'resource' / package.name).exists()
+    assert (package / package.name / 'py.typed').exists()
+    assert field(root, 'export/build_type') == 'ament_python'
+
+
+@pytest.mark.parametrize('package', PYTHON_PACKAGES, ids=lambda path: path.name)
+def test_entry_points_exist(package: Path) -> None:
+    entry_points = setup_arguments(package).get('entry_points', {})
+    assert isinstance(entry_points, dict)
+    for entry in entry_points.get('console_scripts', []):
+        module, _, function = entry.split('=')[1].strip().partition(':')
+        path = (package / module.replace('.', '/')).with_suffix('.py')
+        assert path.exists(), f'{entry}: there is no {path.relative_to(ROOT)}'
+        names = {node.name for node in ast.parse(path.read_text()).body
+                 if isinstance(node, ast.FunctionDef)}
+        assert function in names, f'{entry}: {path.name} has no {function}()'
+
+
+@pytest.mark.parametrize('package', PYTHON_PACKAGES, ids=lambda path: path.name)
+def test_manifest_names_what_is_imported(package: Path) -> None:
+    declared = dependencies(manifest(package), 'exec_depend', 'depend')
+    modules = imported_modules(package) - WITHOUT_ROSDEP_KEY
+    needed = {ROSDEP_KEYS.get(module, module) for module in modules}
+    assert not needed - declared, f'package.xml lacks {sorted(needed - declared)}'
+    known = set(ROSDEP_KEYS.values()) | OWN
+    unused = (declared & known) - needed
+    if package.name == 'lifting_bringup':
+        unused -= STARTED_BY_BRINGUP
+    assert not unused, f'package.xml names {sorted(unused)}, which nothing imports'
+
+
+def test_interface_dependencies_are_those_used() -> None:
+    package = SOURCES / 'lifting_interfaces'
+    used = set()
+    for folder in ('msg', 'srv', 'action'):
+        for path in package.glob(f'{folder}/*'):
+            used |= set(re.findall(r'^(\w+)/\w+', path.read_text(), re.MULTILINE))
+    declared = dependencies(manifest(package), 'depend')
+    cmake = (package / 'CMakeLists.txt').read_text()
+    block = re.search(r'set\(interface_dependencies\s+([^)]*)\)', cmake)
+    assert block is not None
+    assert set(block[1].split()) == declared
+    implied = {'action_msgs'} if any(package.glob('action/*')) else set()
+    assert used - {package.name} | implied == declared
+
+
+@pytest.mark.parametrize('suffix', ['.py', '.sh'])
+def test_spdx_header(suffix: str) -> None:
+    without = []
+    for path in project_files({suffix}):
+        if path.suffix == suffix:
+            text = path.read_text()
+            if suffix == '.sh':
+                text = text.split('\n', 1)[1]
+            if not text.removeprefix('#!/usr/bin/env python3\n').startswith(HEADER):
+                without.append(str(path.relative_to(ROOT)))
+    assert not without
+
+
+def test_no_file_is_too_long() -> None:
+    lengths = {str(path.relative_to(ROOT)): path.read_text().count('\n')
+               for path in project_files(CODE_SUFFIXES)}
+    assert {name: count for name, count in lengths.items() if count > MAXIMUM_LINES} == {}
+
+
+def test_no_paths_of_one_machine() -> None:
+    pattern = re.compile(r'(?<![\w.])/(?:home|root|work|Users|tmp)/\w+')
+    found = []
+    for path in project_files(TEXT_SUFFIXES):
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            if pattern.search(line):
+                found.append(f'{path.relative_to(ROOT)}:{number}: {line.strip()[:80]}')
+    assert not found
+
+
+def test_test_files_have_different_names() -> None:
+    names = [path.name for path in project_files({'.py'}) if path.name.startswith('test_')]
+    assert len(names) == len(set(names))
