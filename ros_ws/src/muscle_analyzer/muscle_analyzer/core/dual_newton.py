@@ -20,14 +20,13 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-#: Share of the first-order gain a step of the line search must reach (Armijo; Nocedal and
-#: Wright 2006, section 3.1).
-ARMIJO = 1e-4
-#: Smallest step of the line search before the method gives up.
-SMALLEST_STEP = 1e-12
+#: A step is taken when the slope of the dual along it has fallen to this share of the first slope.
+SLOPE_SHARE = 0.1
+#: Limit of trials of one line search.
+LINE_TRIALS = 60
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
 def _minimiser(pull: float, low: float, high: float) -> tuple[float, float]:
     """Minimise ``a^2 - pull a`` over [low, high]; give the minimiser and its slope."""
     free = 0.5 * pull
@@ -38,7 +37,7 @@ def _minimiser(pull: float, low: float, high: float) -> tuple[float, float]:
     return free, 0.5
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
 def _columns(matrix: Array) -> tuple[NDArray[np.int64], NDArray[np.int64], Array]:
     """Give the non-zero entries of a matrix column by column (start, row, value)."""
     n_rows, n_columns = matrix.shape
@@ -51,7 +50,9 @@ def _columns(matrix: Array) -> tuple[NDArray[np.int64], NDArray[np.int64], Array
         start[i + 1] += start[i]
     row = np.empty(start[n_columns], np.int64)
     value = np.empty(start[n_columns])
-    fill = start[:-1].copy()
+    fill = np.empty(n_columns, np.int64)
+    for i in range(n_columns):
+        fill[i] = start[i]
     for j in range(n_rows):
         for i in range(n_columns):
             if matrix[j, i] != 0.0:
@@ -61,7 +62,7 @@ def _columns(matrix: Array) -> tuple[NDArray[np.int64], NDArray[np.int64], Array
     return start, row, value
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
 def _cholesky_solve(matrix: Array, vector: Array) -> bool:
     """Solve in place; the solution replaces `vector`.  False if not positive definite."""
     n = vector.size
@@ -88,7 +89,66 @@ def _cholesky_solve(matrix: Array, vector: Array) -> bool:
     return True
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
+def _copy(source: Array, target: Array) -> None:
+    """Copy element by element (slices cost the compiler seconds)."""
+    for i in range(source.size):
+        target[i] = source[i]
+
+
+@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
+def _evaluate(
+    columns: tuple[NDArray[np.int64], NDArray[np.int64], Array],
+    reserve: Array,
+    torque: Array,
+    lower: Array,
+    upper: Array,
+    multiplier: Array,
+    activation: Array,
+    slope: Array,
+    gradient: Array,
+) -> float:
+    """Fill activations, their slopes and the dual's gradient; give its largest entry."""
+    start, row, value = columns
+    for j in range(torque.size):
+        gradient[j] = torque[j] - 0.5 * reserve[j] * reserve[j] * multiplier[j]
+    for i in range(activation.size):
+        pull = 0.0
+        for k in range(start[i], start[i + 1]):
+            pull += value[k] * multiplier[row[k]]
+        activation[i], slope[i] = _minimiser(pull, lower[i], upper[i])
+        for k in range(start[i], start[i + 1]):
+            gradient[row[k]] -= value[k] * activation[i]
+    worst = 0.0
+    for j in range(torque.size):
+        size = abs(gradient[j])
+        if not size <= worst:
+            worst = size
+    return worst
+
+
+@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
+def _hessian(
+    columns: tuple[NDArray[np.int64], NDArray[np.int64], Array],
+    reserve: Array,
+    slope: Array,
+    hessian: Array,
+) -> None:
+    """Fill the lower triangle of minus the dual's generalised Hessian."""
+    start, row, value = columns
+    for j in range(reserve.size):
+        for k in range(reserve.size):
+            hessian[j, k] = 0.0
+        hessian[j, j] = 0.5 * reserve[j] * reserve[j]
+    for i in range(slope.size):
+        if slope[i] > 0.0:
+            for k in range(start[i], start[i + 1]):
+                scaled = slope[i] * value[k]
+                for other in range(start[i], k + 1):
+                    hessian[row[k], row[other]] += scaled * value[other]
+
+
+@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
 def solve_dual(
     matrix: Array,
     reserve: Array,
@@ -128,65 +188,53 @@ def solve_dual(
     converged : bool
     """
     n_c, n_m = matrix.shape
-    start, row, value = _columns(matrix)
-    activation = np.empty(n_m)
-    slope = np.empty(n_m)
-    gradient = np.empty(n_c)
-    trial = multiplier.copy()
+    columns = _columns(matrix)
+    activation, slope = np.empty(n_m), np.empty(n_m)
+    gradient, step, trial = np.empty(n_c), np.empty(n_c), np.empty(n_c)
     hessian = np.empty((n_c, n_c))
-    step = np.zeros(n_c)
-    size, gain, best = 1.0, 0.0, 0.0
     iterations = 0
-    while True:
-        # Dual value and gradient at the trial point.
-        dual = 0.0
-        for j in range(n_c):
-            control = 0.5 * reserve[j] * trial[j]
-            dual += trial[j] * torque[j] - control * control
-            gradient[j] = torque[j] - reserve[j] * control
-        for i in range(n_m):
-            pull = 0.0
-            for k in range(start[i], start[i + 1]):
-                pull += value[k] * trial[row[k]]
-            activation[i], slope[i] = _minimiser(pull, lower[i], upper[i])
-            dual += activation[i] * (activation[i] - pull)
-            for k in range(start[i], start[i + 1]):
-                gradient[row[k]] -= value[k] * activation[i]
-        worst = 0.0
-        for j in range(n_c):
-            worst = max(worst, abs(gradient[j]))
-        if not np.isfinite(worst):
+    worst = _evaluate(
+        columns, reserve, torque, lower, upper, multiplier, activation, slope, gradient
+    )
+    while not worst <= tolerance:
+        if iterations == max_iterations or not np.isfinite(worst):
             return activation, gradient, iterations, False
-        if worst <= tolerance:
-            multiplier[:] = trial
-            return activation, gradient, iterations, True
-        # Rounding of the dual value must not refuse a step close to the solution.
-        slack = 1e-13 * (1.0 + abs(best))
-        if iterations > 0 and dual < best + ARMIJO * size * gain - slack:
-            size *= 0.5
-            if size < SMALLEST_STEP:
-                return activation, gradient, iterations, False
-            trial[:] = multiplier + size * step
-            continue
-        multiplier[:] = trial
-        if iterations == max_iterations:
-            return activation, gradient, iterations, False
-        best = dual
-        hessian[:] = 0.0
-        for j in range(n_c):
-            hessian[j, j] = 0.5 * reserve[j] * reserve[j]
-        for i in range(n_m):
-            if slope[i] > 0.0:
-                for k in range(start[i], start[i + 1]):
-                    scaled = slope[i] * value[k]
-                    for other in range(start[i], k + 1):
-                        hessian[row[k], row[other]] += scaled * value[other]
-        step[:] = gradient
+        _hessian(columns, reserve, slope, hessian)
+        _copy(gradient, step)
         if not _cholesky_solve(hessian, step):
             return activation, gradient, iterations, False
-        gain = 0.0
-        for j in range(n_c):
-            gain += gradient[j] * step[j]
-        size = 1.0
-        trial[:] = multiplier + step
         iterations += 1
+        first_slope = 0.0
+        for j in range(n_c):
+            first_slope += gradient[j] * step[j]
+        # The slope of the dual falls along the step.  Where it passes zero within the step, find
+        # that place between `near` (slope positive) and `past` (negative) by false position,
+        # halving the kept end's slope when one end stays twice (the Illinois rule).
+        size, near, past = 1.0, 0.0, 1.0
+        near_slope, past_slope, last = first_slope, 0.0, 0
+        for _ in range(LINE_TRIALS):
+            for j in range(n_c):
+                trial[j] = multiplier[j] + size * step[j]
+            worst = _evaluate(
+                columns, reserve, torque, lower, upper, trial, activation, slope, gradient
+            )
+            here = 0.0
+            for j in range(n_c):
+                here += gradient[j] * step[j]
+            if abs(here) <= SLOPE_SHARE * first_slope or worst <= tolerance:
+                break
+            if here > 0.0:
+                if size == 1.0:
+                    break
+                near, near_slope = size, here
+                if last == 1:
+                    past_slope *= 0.5
+                last = 1
+            else:
+                past, past_slope = size, here
+                if last == -1:
+                    near_slope *= 0.5
+                last = -1
+            size = near + (past - near) * near_slope / (near_slope - past_slope)
+        _copy(trial, multiplier)
+    return activation, gradient, iterations, True

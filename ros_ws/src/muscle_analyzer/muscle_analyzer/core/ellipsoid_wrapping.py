@@ -36,12 +36,12 @@ _RAW_NODES, _RAW_WEIGHTS = np.polynomial.legendre.leggauss(12)
 _NODES, _WEIGHTS = 0.5 * (_RAW_NODES + 1.0), 0.5 * _RAW_WEIGHTS
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
 def _dot(a: Array, b: Array) -> float:
     return float(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
 def _cross(a: Array, b: Array) -> Array:
     out = np.empty(3)
     out[0] = a[1] * b[2] - a[2] * b[1]
@@ -50,7 +50,7 @@ def _cross(a: Array, b: Array) -> Array:
     return out
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
 def closest_on_ellipsoid(axes: Array, point: Array, held: int, closest: Array) -> None:
     """
     Find the point of an ellipsoid closest to a point off its centre.
@@ -94,8 +94,8 @@ def closest_on_ellipsoid(axes: Array, point: Array, held: int, closest: Array) -
             closest[i] = 0.0 if over <= 0.0 else axes[i] * axes[i] * point[i] / over
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
-def _mean_direction(axes: Array, enter: Array, leave: Array, mean: Array) -> None:
+@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
+def _mean_direction(axes: Array, enter: Array, leave: Array, held: int, mean: Array) -> None:
     """Fill `mean` with the mean of the unit vectors from a chord to the closest surface."""
     sample, surface = np.empty(3), np.empty(3)
     cuts = np.zeros(5)
@@ -110,14 +110,15 @@ def _mean_direction(axes: Array, enter: Array, leave: Array, mean: Array) -> Non
             cuts[k] = cut
             n += 1
     cuts[n] = 1.0
-    mean[:] = 0.0
+    for i in range(3):
+        mean[i] = 0.0
     for part in range(n):
         width = cuts[part + 1] - cuts[part]
         for k in range(_FAN_NODES.size):
             share = cuts[part] + width * _FAN_NODES[k]
             for i in range(3):
                 sample[i] = enter[i] + share * (leave[i] - enter[i])
-            closest_on_ellipsoid(axes, sample, -1, surface)
+            closest_on_ellipsoid(axes, sample, held, surface)
             square = 0.0
             for i in range(3):
                 square += (surface[i] - sample[i]) ** 2
@@ -131,10 +132,11 @@ def _mean_direction(axes: Array, enter: Array, leave: Array, mean: Array) -> Non
             mean[i] /= length
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
 def _guide(axes: Array, enter: Array, leave: Array, axis: int, sign: int, guide: Array) -> None:
     """Fill `guide` with the surface point that fixes the plane of the path."""
-    best, square = 0, 0.0
+    # Typed integers: a literal would make the compiler specialise the functions they are given to.
+    best, none, square = np.int64(0), np.int64(-1), 0.0
     for i in range(3):
         square += (leave[i] - enter[i]) ** 2
         if abs(leave[i] - enter[i]) > abs(leave[best] - enter[best]):
@@ -154,22 +156,23 @@ def _guide(axes: Array, enter: Array, leave: Array, axis: int, sign: int, guide:
         closest_on_ellipsoid(axes, point, best, guide)
     if fan > 0.0:
         by_fan = np.empty(3)
-        _mean_direction(axes, enter, leave, by_fan)
+        _mean_direction(axes, enter, leave, none, by_fan)
         # A point one mean half axis away, as OpenSim scales lengths.
         reach = (axes[0] + axes[1] + axes[2]) / 3.0
         for i in range(3):
             point[i] = 0.5 * (enter[i] + leave[i]) + reach * by_fan[i]
-        closest_on_ellipsoid(axes, point, -1, by_fan)
+        closest_on_ellipsoid(axes, point, none, by_fan)
         for i in range(3):
             point[i] = by_fan[i] if fan == 1.0 else (1.0 - fan) * guide[i] + fan * by_fan[i]
-        closest_on_ellipsoid(axes, point, -1, guide)
+        closest_on_ellipsoid(axes, point, none, guide)
     if sign != 0 and guide[axis] * sign < 0.0:
-        point[:] = guide
+        for i in range(3):
+            point[i] = guide[i]
         point[axis] *= fan - 1.0
-        closest_on_ellipsoid(axes, point, axis if fan == 1.0 else -1, guide)
+        closest_on_ellipsoid(axes, point, axis if fan == 1.0 else none, guide)
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
 def wrap_ellipsoid(
     first: Array,
     second: Array,

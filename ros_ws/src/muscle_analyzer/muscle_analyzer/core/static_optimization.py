@@ -19,15 +19,13 @@ from numpy.typing import NDArray
 
 from muscle_analyzer.core.dual_newton import solve_dual
 from muscle_analyzer.core.exceptions import InputArrayError, OptionError
+from muscle_analyzer.core.reserves import Reserve
 
 Array = NDArray[np.float64]
 
 #: Smallest activation OpenSim 4.6 allows a muscle in static optimisation (``min_control`` of
 #: the muscles of the lifting full-body model).
 MINIMUM_ACTIVATION = 0.01
-#: Torque of the reserve at unit control [N m]: small where a muscle crosses the coordinate,
-#: large where none does (README of the OpenSim 4.6 reference of the squats).
-RESERVE_WITH_MUSCLE, RESERVE_WITHOUT_MUSCLE = 1.0, 100.0
 #: A coordinate is not balanced by its muscles when the reserve takes more than this share of
 #: the torque (Hicks et al. 2015, J Biomech Eng 137:020905: 5 % of the net joint moment) ...
 RESERVE_SHARE = 0.05
@@ -44,8 +42,6 @@ class StaticOptimizationOptions:
     ----------
     minimum_activation, maximum_activation
         Bounds of every activation.
-    reserve_with_muscle, reserve_without_muscle
-        Reserve torque at unit control of a coordinate that muscles cross or do not [N m].
     tolerance
         Largest balance residual of a solution, relative to the largest torque (or 1 N m).
     max_iterations
@@ -54,8 +50,6 @@ class StaticOptimizationOptions:
 
     minimum_activation: float = MINIMUM_ACTIVATION
     maximum_activation: float = 1.0
-    reserve_with_muscle: float = RESERVE_WITH_MUSCLE
-    reserve_without_muscle: float = RESERVE_WITHOUT_MUSCLE
     tolerance: float = 1e-10
     max_iterations: int = 100
 
@@ -74,8 +68,6 @@ class MuscleBalance:
         Dual solution, the warm start of the next frame [1 / (N m)].
     at_lower, at_upper : (n_m,) bool
         Active sets.
-    crossed : (n_c,) bool
-        Coordinates that a muscle crosses.
     unbalanced : tuple of str
         Coordinates whose muscles are too weak.
     report : SolveReport
@@ -87,7 +79,6 @@ class MuscleBalance:
     multiplier: Array
     at_lower: NDArray[np.bool_]
     at_upper: NDArray[np.bool_]
-    crossed: NDArray[np.bool_]
     unbalanced: tuple[str, ...]
     report: SolveReport
 
@@ -98,8 +89,10 @@ class StaticOptimization:
 
     Parameters
     ----------
-    muscle_names, coordinate_names
-        Names of the columns and rows of the torque matrix.
+    muscle_names
+        Names of the columns of the torque matrix.
+    reserves
+        Reserve of each row of the torque matrix.
     options
         Settings.
     """
@@ -107,26 +100,28 @@ class StaticOptimization:
     def __init__(
         self,
         muscle_names: tuple[str, ...],
-        coordinate_names: tuple[str, ...],
+        reserves: tuple[Reserve, ...],
         options: StaticOptimizationOptions | None = None,
     ) -> None:
         self.options = options or StaticOptimizationOptions()
         self.muscle_names = muscle_names
-        self.coordinate_names = coordinate_names
+        self.coordinate_names = tuple(reserve.coordinate for reserve in reserves)
         low, high = self.options.minimum_activation, self.options.maximum_activation
         if not 0.0 <= low < high:
             raise OptionError(
                 f'minimum_activation {low} must be in [0, maximum_activation {high})'
             )
-        for name in ('reserve_with_muscle', 'reserve_without_muscle'):
-            if not getattr(self.options, name) > 0.0:
+        for reserve in reserves:
+            if not reserve.torque > 0.0:
                 raise OptionError(
-                    f'{name} {getattr(self.options, name)} must be positive: '
-                    'without reserve a weak muscle leaves no solution'
+                    f'reserve of {reserve.coordinate}: torque {reserve.torque} N m must be '
+                    'positive: without it a weak muscle leaves no solution'
                 )
+        self._unit = np.array([reserve.torque for reserve in reserves])
+        self._muscle_driven = np.array([reserve.muscle_driven for reserve in reserves], np.bool_)
         self._lower = np.full(len(muscle_names), low)
         self._upper = np.full(len(muscle_names), high)
-        self._multiplier = np.zeros(len(coordinate_names))
+        self._multiplier = np.zeros(len(reserves))
 
     def reset(self) -> None:
         """Forget the previous frame."""
@@ -150,10 +145,7 @@ class StaticOptimization:
         """
         began = time.perf_counter()
         matrix, torque = self._checked(matrix, torque)
-        crossed: NDArray[np.bool_] = (matrix != 0.0).any(axis=1)
-        unit = np.where(
-            crossed, self.options.reserve_with_muscle, self.options.reserve_without_muscle
-        )
+        unit = self._unit
         tolerance = self.options.tolerance * max(1.0, float(np.abs(torque).max(initial=0.0)))
         multiplier = self._multiplier.copy()
         limit = self.options.max_iterations
@@ -175,7 +167,7 @@ class StaticOptimization:
         gradient = 2.0 * activation - matrix.T @ multiplier
         projected = np.clip(activation - gradient, self._lower, self._upper)
         reserve = unit * control
-        weak = crossed & (np.abs(reserve) > RESERVE_SHARE * np.abs(torque))
+        weak = self._muscle_driven & (np.abs(reserve) > RESERVE_SHARE * np.abs(torque))
         weak &= np.abs(control) > RESERVE_CONTROL
         unbalanced = tuple(np.array(self.coordinate_names)[weak].tolist())
         at_upper = activation >= self._upper
@@ -196,7 +188,6 @@ class StaticOptimization:
             multiplier=multiplier,
             at_lower=activation <= self._lower,
             at_upper=at_upper,
-            crossed=crossed,
             unbalanced=unbalanced,
             report=report,
         )
