@@ -1,0 +1,412 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a report is made of: plain arrays and names, independent of the rooms they come from.
+
+Every part of a lift may be :class:`Missing`; the page then says why instead of leaving it out.
+All times are seconds since the start of the lift unless said otherwise, all forces newtons.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Generic, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from lifting_bringup.report.exceptions import ReportError
+
+Array = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+T = TypeVar('T')
+
+#: The six joints of figures 4.10 and 4.11 of the thesis.
+JOINTS = ('spine', 'shoulder', 'elbow', 'hip', 'knee', 'ankle')
+
+
+@dataclass(frozen=True)
+class Missing:
+    """A part that is not there, and why."""
+
+    reason: str
+
+
+@dataclass(frozen=True)
+class Pair(Generic[T]):
+    """The same quantity of the recorded and of the optimal lift."""
+
+    measured: T | Missing
+    predicted: T | Missing
+
+    def present(self) -> dict[str, T]:
+        """Return what is there, by source."""
+        return {source: part for source, part in
+                (('measured', self.measured), ('predicted', self.predicted))
+                if not isinstance(part, Missing)}
+
+    def missing(self) -> dict[str, str]:
+        """Return the reasons for what is not there, by source."""
+        return {source: part.reason for source, part in
+                (('measured', self.measured), ('predicted', self.predicted))
+                if isinstance(part, Missing)}
+
+
+@dataclass(frozen=True)
+class Header:
+    """Who lifted what, and where the data come from.
+
+    Attributes
+    ----------
+    subject, sex : str
+        Pseudonym; ``male`` or ``female``.
+    mass, stature, age : float
+        [kg], [m], [years].
+    task, description, recording, source : str
+    simulated : bool
+        The recording was made by a simulation, not by a person.
+    box_mass : float
+        [kg].
+    lifts_per_day, lifts_per_minute, duration_hours : float
+    run : str
+        How the graph ran, for example ``offline`` or ``online at 2 times real time``.
+    created : str
+        Date and time of the report.
+    version : str
+    """
+
+    subject: str
+    sex: str
+    mass: float
+    stature: float
+    age: float
+    task: str
+    description: str
+    recording: str
+    source: str
+    simulated: bool
+    box_mass: float
+    lifts_per_day: float
+    lifts_per_minute: float
+    duration_hours: float
+    run: str
+    created: str
+    version: str
+
+
+@dataclass(frozen=True)
+class JointAngles:
+    """Angles of the six joints; right and left are the same where the skeleton has one.
+
+    Attributes
+    ----------
+    time : array (n,)
+    right, left : arrays (n, 6)
+        In the order of ``JOINTS`` [rad]; spine: flexion positive, the others with OpenSim's
+        signs. NaN where the skeleton lacks the joint.
+    """
+
+    time: Array
+    right: Array
+    left: Array
+
+    def __post_init__(self) -> None:
+        """Check the shapes."""
+        check(self, 'right', (len(self.time), len(JOINTS)))
+        check(self, 'left', (len(self.time), len(JOINTS)))
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Measured against predicted over normalised time (tables 2.4 and 2.5 of the thesis).
+
+    Attributes
+    ----------
+    joints : tuple of str
+    rmse, pearson : arrays (n_joints,)
+        [deg] and r.
+    vertical_rmse, vertical_pearson, horizontal_rmse, horizontal_pearson : float
+        Ground reaction [N] and r.
+    """
+
+    joints: tuple[str, ...]
+    rmse: Array
+    pearson: Array
+    vertical_rmse: float
+    vertical_pearson: float
+    horizontal_rmse: float
+    horizontal_pearson: float
+
+
+@dataclass(frozen=True)
+class GroundForces:
+    """Force of the ground on the feet: time (n,), force (n, 2, 3) [N], right foot first."""
+
+    time: Array
+    force: Array
+
+    def __post_init__(self) -> None:
+        """Check the shape."""
+        check(self, 'force', (len(self.time), 2, 3))
+
+
+@dataclass(frozen=True)
+class Torques:
+    """Joint torques and dynamic strength: time (n,), the rest (n, n_joints) [N m]."""
+
+    time: Array
+    joints: tuple[str, ...]
+    torque: Array
+    lower: Array
+    upper: Array
+
+    def __post_init__(self) -> None:
+        """Check the shapes."""
+        for name in ('torque', 'lower', 'upper'):
+            check(self, name, (len(self.time), len(self.joints)))
+
+
+@dataclass(frozen=True)
+class Activations:
+    """Muscle activations: time (n,), activation (n, n_muscles) [0..1], solved (n,)."""
+
+    time: Array
+    muscles: tuple[str, ...]
+    activation: Array
+    solved: BoolArray
+
+    def __post_init__(self) -> None:
+        """Check the shapes."""
+        check(self, 'activation', (len(self.time), len(self.muscles)))
+        check(self, 'solved', (len(self.time),))
+
+
+@dataclass(frozen=True)
+class SpineCurves:
+    """L5-S1 load over a lift, (n,) each.
+
+    Attributes
+    ----------
+    time, compression, anterior_shear : array
+        [s], [N].
+    solved : array of bool
+        Samples whose solve report is good; the others are drawn as gaps.
+    compression_per_degree, anterior_shear_per_degree : array
+        What one degree of forward tilt of the disc frame changes [N/deg]; NaN if not known.
+    disc_frame : str
+        Name of the disc frame.
+    """
+
+    time: Array
+    compression: Array
+    anterior_shear: Array
+    solved: BoolArray
+    compression_per_degree: Array
+    anterior_shear_per_degree: Array
+    disc_frame: str
+
+    def __post_init__(self) -> None:
+        """Check the shapes."""
+        for name in ('compression', 'anterior_shear', 'solved', 'compression_per_degree',
+                     'anterior_shear_per_degree'):
+            check(self, name, (len(self.time),))
+
+
+@dataclass(frozen=True)
+class BodyPoints:
+    """Points of the body for the stick figures.
+
+    Attributes
+    ----------
+    time : array (n,)
+    names : tuple of n_p names
+        Of ``human_model.motion.POINTS``.
+    points : array (n, n_p, 3)
+        x forward, y left, z up [m].
+    box : array (n, 3)
+        Centre of the box, NaN if there is none.
+    box_size : array (3,)
+        Depth (forward), width, height [m]; NaN if not known.
+    """
+
+    time: Array
+    names: tuple[str, ...]
+    points: Array
+    box: Array
+    box_size: Array
+
+    def __post_init__(self) -> None:
+        """Check the shapes."""
+        check(self, 'points', (len(self.time), len(self.names), 3))
+        check(self, 'box', (len(self.time), 3))
+        check(self, 'box_size', (3,))
+
+
+@dataclass(frozen=True)
+class CriterionRow:
+    """One peak against one limit; see ``injury_monitor.core.assessment.Criterion``."""
+
+    criterion: str
+    source: str
+    value: float
+    limit: float
+    margin: float
+    unit: str
+    limit_source: str
+    time: float
+    detail: str = ''
+
+
+@dataclass(frozen=True)
+class Lifting:
+    """Revised NIOSH lifting equation at the governing end of the lift.
+
+    Attributes
+    ----------
+    multipliers : tuple of six floats
+        HM, VM, DM, AM, FM, CM.
+    recommended_weight_limit, lifting_index : float
+        [kg], 1.
+    limiting_multiplier, band : str
+    variables : dict
+        Task variables by symbol with their unit, for example ``{'H [cm]': 42.0}``; may be empty.
+    """
+
+    multipliers: tuple[float, ...]
+    recommended_weight_limit: float
+    lifting_index: float
+    limiting_multiplier: str
+    band: str
+    variables: dict[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Risk:
+    """Assessment of one lift.
+
+    Attributes
+    ----------
+    criteria : tuple of CriterionRow
+    unnecessary_compression, unnecessary_shear : float
+        Measured minus predicted peak [N]; NaN without a prediction.
+    zone : str
+        ``nominal``, ``action``, ``hazardous`` or ``unknown`` (NIOSH 1981).
+    summary : str
+    samples_left_out : int
+    """
+
+    criteria: tuple[CriterionRow, ...]
+    unnecessary_compression: float
+    unnecessary_shear: float
+    zone: str
+    summary: str
+    samples_left_out: int
+
+    def find(self, name: str, source: str) -> CriterionRow | None:
+        """Return the first criterion whose name begins with ``name``, or None."""
+        for row in self.criteria:
+            if row.criterion.startswith(name) and row.source == source:
+                return row
+        return None
+
+
+@dataclass(frozen=True)
+class AlarmRow:
+    """One alarm transition; stamp [s] since the start of the recording."""
+
+    stamp: float
+    alarm: str
+    previous_state: str
+    state: str
+    value: float
+    limit: float
+    margin: float
+    unit: str
+    limit_source: str
+    lift_id: str
+    historical: bool = False
+
+
+@dataclass(frozen=True)
+class SolveRow:
+    """One solve report in words and numbers."""
+
+    stage: str
+    status: int
+    status_name: str
+    message: str
+    iterations: int
+    primal_residual: float
+    dual_residual: float
+    solve_time: float
+
+
+@dataclass(frozen=True)
+class QualityRow:
+    """One quality measure: name, measured and predicted value in a unit, and what it means.
+
+    A value that is not there is NaN and its reason stands in ``meaning``.
+    """
+
+    name: str
+    measured: float
+    predicted: float
+    unit: str
+    meaning: str
+
+
+@dataclass(frozen=True)
+class LiftReport:
+    """Everything about one lift.
+
+    Attributes
+    ----------
+    lift_id : str
+    start : float
+        Since the start of the recording [s].
+    duration : float
+        [s].
+    """
+
+    lift_id: str
+    start: float
+    duration: float
+    angles: Pair[JointAngles]
+    comparison: Comparison | Missing
+    ground: Pair[GroundForces]
+    torques: Pair[Torques]
+    activations: Pair[Activations]
+    spine: Pair[SpineCurves]
+    points: Pair[BodyPoints]
+    risk: Risk | Missing
+    lifting: Lifting | Missing
+    solves: tuple[SolveRow, ...] | Missing
+    quality: tuple[QualityRow, ...] | Missing
+
+
+@dataclass(frozen=True)
+class ReportData:
+    """Everything on the page.
+
+    Attributes
+    ----------
+    header : Header
+    lifts : tuple of LiftReport, or Missing
+    alarms : tuple of AlarmRow (may be empty: no alarm), or Missing
+    recording_quality : tuple of QualityRow, or Missing
+        Of the whole recording: markers, plates, samples left out.
+    remarks : tuple of str
+        What the user should know about this run: lost data, warnings.
+    """
+
+    header: Header
+    lifts: tuple[LiftReport, ...] | Missing
+    alarms: tuple[AlarmRow, ...] | Missing
+    recording_quality: tuple[QualityRow, ...] | Missing
+    remarks: tuple[str, ...] = ()
+
+
+def check(owner: object, name: str, shape: tuple[int, ...]) -> None:
+    """Raise ReportError unless a field has the given shape."""
+    found = np.shape(getattr(owner, name))
+    if found != shape:
+        raise ReportError(f'{type(owner).__name__}.{name}', found, f'must have shape {shape}')
