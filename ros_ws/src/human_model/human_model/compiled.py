@@ -5,7 +5,8 @@
 All functions are numba functions and can be called from other packages' numba code. World axes
 are REP-103; bodies and segments are defined in `tree`. The algorithm is recursive Newton-Euler;
 `recursive` holds the thesis' Lagrangian recursion over the Denavit-Hartenberg rows, and the tests
-hold both to the same numbers.
+hold both to the same numbers. The small helpers add into their first argument, so that the loops
+over bodies allocate nothing.
 """
 
 import numba
@@ -20,23 +21,50 @@ IntArray = npt.NDArray[np.int64]
 #: Standard gravity [m/s^2] (CGPM 1901).
 GRAVITY = 9.80665
 
-
-@numba.njit(cache=True)
-def _cross(a: Array, b: Array) -> Array:
-    out = np.empty(3)
-    out[0] = a[1] * b[2] - a[2] * b[1]
-    out[1] = a[2] * b[0] - a[0] * b[2]
-    out[2] = a[0] * b[1] - a[1] * b[0]
-    return out
+_PRISMATIC = 1
 
 
 @numba.njit(cache=True)
-def _turn(matrix: Array, vector: Array) -> Array:
-    out = np.empty(3)
+def _dot(a: Array, b: Array) -> float:
+    return float(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
+
+
+@numba.njit(cache=True)
+def _add(out: Array, a: Array, factor: float) -> None:
     for i in range(3):
-        out[i] = (matrix[i, 0] * vector[0] + matrix[i, 1] * vector[1]
-                  + matrix[i, 2] * vector[2])
-    return out
+        out[i] += factor * a[i]
+
+
+@numba.njit(cache=True)
+def _add_cross(out: Array, a: Array, b: Array, factor: float) -> None:
+    out[0] += factor * (a[1] * b[2] - a[2] * b[1])
+    out[1] += factor * (a[2] * b[0] - a[0] * b[2])
+    out[2] += factor * (a[0] * b[1] - a[1] * b[0])
+
+
+@numba.njit(cache=True)
+def _add_turned(out: Array, matrix: Array, vector: Array) -> None:
+    for i in range(3):
+        out[i] += matrix[i, 0] * vector[0] + matrix[i, 1] * vector[1] + matrix[i, 2] * vector[2]
+
+
+@numba.njit(cache=True)
+def _add_turned_back(out: Array, matrix: Array, vector: Array) -> None:
+    for i in range(3):
+        out[i] += matrix[0, i] * vector[0] + matrix[1, i] * vector[1] + matrix[2, i] * vector[2]
+
+
+@numba.njit(cache=True)
+def _turn_about(out: Array, base: Array, a: Array, angle: float) -> None:
+    """Write ``base exp(a angle)`` into out (Rodrigues), column by column."""
+    c, s = np.cos(angle), np.sin(angle)
+    t = 1.0 - c
+    for i in range(3):
+        x, y, z = base[i, 0], base[i, 1], base[i, 2]
+        along = t * (x * a[0] + y * a[1] + z * a[2])
+        out[i, 0] = c * x + along * a[0] + s * (y * a[2] - z * a[1])
+        out[i, 1] = c * y + along * a[1] + s * (z * a[0] - x * a[2])
+        out[i, 2] = c * z + along * a[2] + s * (x * a[1] - y * a[0])
 
 
 @numba.njit(cache=True)
@@ -44,40 +72,21 @@ def body_frames(tree: TreeArrays, q: Array) -> tuple[Array, Array, Array]:
     """World rotation (n_q, 3, 3), origin (n_q, 3) [m] and joint axis (n_q, 3) of all bodies."""
     n = q.shape[0]
     rotation = np.empty((n, 3, 3))
-    origin = np.empty((n, 3))
-    axis = np.empty((n, 3))
+    origin = np.zeros((n, 3))
+    axis = np.zeros((n, 3))
+    world = np.eye(3)
     for j in range(n):
         p = tree.parent[j]
-        local = tree.offset[j].copy()
-        if tree.kind[j] == 1:
-            local += tree.axis[j] * q[j]
-        if p < 0:
-            base = np.eye(3)
-            origin[j] = local
+        base = world if p < 0 else rotation[p]
+        if p >= 0:
+            _add(origin[j], origin[p], 1.0)
+        _add_turned(origin[j], base, tree.offset[j])
+        _add_turned(axis[j], base, tree.axis[j])
+        if tree.kind[j] == _PRISMATIC:
+            _add(origin[j], axis[j], q[j])
+            _turn_about(rotation[j], base, tree.axis[j], 0.0)
         else:
-            base = rotation[p]
-            origin[j] = origin[p] + _turn(base, local)
-        axis[j] = _turn(base, tree.axis[j])
-        if tree.kind[j] == 1:
-            rotation[j] = base
-            continue
-        a = tree.axis[j]
-        c, s = np.cos(q[j]), np.sin(q[j])
-        own = np.empty((3, 3))
-        for r in range(3):
-            for k in range(3):
-                own[r, k] = (1.0 - c) * a[r] * a[k]
-            own[r, r] += c
-        own[0, 1] -= s * a[2]
-        own[0, 2] += s * a[1]
-        own[1, 0] += s * a[2]
-        own[1, 2] -= s * a[0]
-        own[2, 0] -= s * a[1]
-        own[2, 1] += s * a[0]
-        for r in range(3):
-            for k in range(3):
-                rotation[j, r, k] = (base[r, 0] * own[0, k] + base[r, 1] * own[1, k]
-                                     + base[r, 2] * own[2, k])
+            _turn_about(rotation[j], base, tree.axis[j], q[j])
     return rotation, origin, axis
 
 
@@ -91,7 +100,8 @@ def segment_frames(tree: TreeArrays, q: Array) -> tuple[Array, Array]:
     for s in range(n):
         b = tree.segment_body[s]
         segment_rotation[s] = rotation[b]
-        segment_origin[s] = origin[b] + _turn(rotation[b], tree.segment_offset[s])
+        segment_origin[s] = origin[b]
+        _add_turned(segment_origin[s], rotation[b], tree.segment_offset[s])
     return segment_rotation, segment_origin
 
 
@@ -99,11 +109,11 @@ def segment_frames(tree: TreeArrays, q: Array) -> tuple[Array, Array]:
 def point_positions(tree: TreeArrays, q: Array, segment: IntArray, local: Array) -> Array:
     """World positions (n, 3) [m] of points fixed to segments (n,) at local positions (n, 3)."""
     rotation, origin = segment_frames(tree, q)
-    out = np.empty((segment.shape[0], 3))
+    position = np.empty((segment.shape[0], 3))
     for i in range(segment.shape[0]):
-        s = segment[i]
-        out[i] = origin[s] + _turn(rotation[s], local[i])
-    return out
+        position[i] = origin[segment[i]]
+        _add_turned(position[i], rotation[segment[i]], local[i])
+    return position
 
 
 @numba.njit(cache=True)
@@ -111,18 +121,20 @@ def points_and_jacobian(tree: TreeArrays, q: Array, segment: IntArray, local: Ar
                         ) -> tuple[Array, Array]:
     """World positions (n, 3) [m] of points and their Jacobian (n, 3, n_q) [m/rad or 1]."""
     rotation, origin, axis = body_frames(tree, q)
-    n, n_q = segment.shape[0], q.shape[0]
+    n = segment.shape[0]
     position = np.empty((n, 3))
-    jacobian = np.zeros((n, 3, n_q))
+    jacobian = np.zeros((n, 3, q.shape[0]))
     for i in range(n):
-        b = tree.segment_body[segment[i]]
-        position[i] = origin[b] + _turn(rotation[b], tree.segment_offset[segment[i]] + local[i])
-        j = b
+        j = tree.segment_body[segment[i]]
+        position[i] = origin[j]
+        _add_turned(position[i], rotation[j], tree.segment_offset[segment[i]])
+        _add_turned(position[i], rotation[j], local[i])
         while j >= 0:
-            if tree.kind[j] == 1:
+            if tree.kind[j] == _PRISMATIC:
                 jacobian[i, :, j] = axis[j]
             else:
-                jacobian[i, :, j] = _cross(axis[j], position[i] - origin[j])
+                _add_cross(jacobian[i, :, j], axis[j], position[i], 1.0)
+                _add_cross(jacobian[i, :, j], axis[j], origin[j], -1.0)
             j = tree.parent[j]
     return position, jacobian
 
@@ -139,21 +151,29 @@ def body_motion(tree: TreeArrays, q: Array, qd: Array, qdd: Array,
     n = q.shape[0]
     omega, alpha = np.zeros((n, 3)), np.zeros((n, 3))
     velocity, acceleration = np.zeros((n, 3)), np.zeros((n, 3))
+    arm, turning = np.empty(3), np.empty(3)
     for j in range(n):
         p = tree.parent[j]
         if p >= 0:
-            arm = origin[j] - origin[p]
-            turning = _cross(omega[p], arm)
-            omega[j] = omega[p]
-            alpha[j] = alpha[p]
-            velocity[j] = velocity[p] + turning
-            acceleration[j] = acceleration[p] + _cross(alpha[p], arm) + _cross(omega[p], turning)
-        if tree.kind[j] == 1:
-            velocity[j] += axis[j] * qd[j]
-            acceleration[j] += axis[j] * qdd[j] + 2.0 * _cross(omega[j], axis[j]) * qd[j]
+            for i in range(3):
+                arm[i] = origin[j, i] - origin[p, i]
+                turning[i] = 0.0
+            _add_cross(turning, omega[p], arm, 1.0)
+            _add(omega[j], omega[p], 1.0)
+            _add(alpha[j], alpha[p], 1.0)
+            _add(velocity[j], velocity[p], 1.0)
+            _add(velocity[j], turning, 1.0)
+            _add(acceleration[j], acceleration[p], 1.0)
+            _add_cross(acceleration[j], alpha[p], arm, 1.0)
+            _add_cross(acceleration[j], omega[p], turning, 1.0)
+        if tree.kind[j] == _PRISMATIC:
+            _add(velocity[j], axis[j], qd[j])
+            _add(acceleration[j], axis[j], qdd[j])
+            _add_cross(acceleration[j], omega[j], axis[j], 2.0 * qd[j])
         else:
-            alpha[j] += axis[j] * qdd[j] + _cross(omega[j], axis[j]) * qd[j]
-            omega[j] += axis[j] * qd[j]
+            _add(alpha[j], axis[j], qdd[j])
+            _add_cross(alpha[j], omega[j], axis[j], qd[j])
+            _add(omega[j], axis[j], qd[j])
     return rotation, origin, axis, omega, alpha, velocity, acceleration
 
 
@@ -169,28 +189,45 @@ def newton_euler(
     rotation, origin, axis, omega, alpha, _, acceleration = body_motion(tree, q, qd, qdd)
     n = q.shape[0]
     force, moment = np.zeros((n, 3)), np.zeros((n, 3))
+    arm, turning, inertial = np.empty(3), np.empty(3), np.empty(3)
+    local, spin = np.empty(3), np.empty(3)
     for s in range(tree.segment_body.shape[0]):
         b = tree.segment_body[s]
-        arm = _turn(rotation[b], tree.segment_offset[s] + tree.com[s])
-        a = (acceleration[b] + _cross(alpha[b], arm)
-             + _cross(omega[b], _cross(omega[b], arm)))
-        a[2] += gravity
-        inertia = rotation[b] @ tree.inertia[s] @ rotation[b].T
-        external = wrench[s, :3]
-        f = tree.mass[s] * a - external
-        force[b] += f
-        moment[b] += (_turn(inertia, alpha[b]) + _cross(omega[b], _turn(inertia, omega[b]))
-                      + _cross(arm, tree.mass[s] * a)
-                      - (wrench[s, 3:] - _cross(origin[b], external)))
+        arm[:] = 0.0
+        _add_turned(arm, rotation[b], tree.segment_offset[s])
+        _add_turned(arm, rotation[b], tree.com[s])
+        turning[:] = 0.0
+        _add_cross(turning, omega[b], arm, 1.0)
+        inertial[:] = acceleration[b]
+        inertial[2] += gravity
+        _add_cross(inertial, alpha[b], arm, 1.0)
+        _add_cross(inertial, omega[b], turning, 1.0)
+        _add(force[b], inertial, tree.mass[s])
+        _add(force[b], wrench[s, :3], -1.0)
+        _add_cross(moment[b], arm, inertial, tree.mass[s])
+        _add(moment[b], wrench[s, 3:], -1.0)
+        _add_cross(moment[b], origin[b], wrench[s, :3], 1.0)
+        # Rotation: R J R^T alpha + omega x (R J R^T omega), J in the segment's axes.
+        local[:] = 0.0
+        _add_turned_back(local, rotation[b], alpha[b])
+        spin[:] = 0.0
+        _add_turned(spin, tree.inertia[s], local)
+        _add_turned(moment[b], rotation[b], spin)
+        local[:] = 0.0
+        _add_turned_back(local, rotation[b], omega[b])
+        spin[:] = 0.0
+        _add_turned(spin, tree.inertia[s], local)
+        local[:] = 0.0
+        _add_turned(local, rotation[b], spin)
+        _add_cross(moment[b], omega[b], local, 1.0)
     tau = np.empty(n)
     for j in range(n - 1, -1, -1):
-        if tree.kind[j] == 1:
-            tau[j] = axis[j, 0] * force[j, 0] + axis[j, 1] * force[j, 1] + axis[j, 2] * force[j, 2]
-        else:
-            tau[j] = (axis[j, 0] * moment[j, 0] + axis[j, 1] * moment[j, 1]
-                      + axis[j, 2] * moment[j, 2])
+        tau[j] = _dot(axis[j], force[j] if tree.kind[j] == _PRISMATIC else moment[j])
         p = tree.parent[j]
         if p >= 0:
-            force[p] += force[j]
-            moment[p] += moment[j] + _cross(origin[j] - origin[p], force[j])
+            for i in range(3):
+                arm[i] = origin[j, i] - origin[p, i]
+            _add(force[p], force[j], 1.0)
+            _add(moment[p], moment[j], 1.0)
+            _add_cross(moment[p], arm, force[j], 1.0)
     return tau

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Blocks of body motion and lifts, the data every room exchanges."""
 
+import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -223,6 +224,26 @@ class Lift:
             raise MotionError(f'lift.end: {self.end:g} s is not after lift.start {self.start:g} s')
         if not (np.isfinite(self.box_mass) and self.box_mass >= 0):
             raise MotionError(f'lift.box_mass: {self.box_mass} kg is no mass')
+
+    def to_dict(self) -> dict[str, Any]:
+        """Fields by name, as `numpy.savez` takes them; those of the motion as ``motion.<name>``."""
+        fields: dict[str, Any] = {name: np.array(getattr(self, name)) for name in (
+            'lift_id', 'source', 'start', 'end', 'box_mass')}
+        fields['report'] = np.array(json.dumps(self.report.to_dict()))
+        return fields | {f'motion.{name}': value for name, value in self.motion.to_dict().items()}
+
+    @classmethod
+    def from_dict(cls, fields: Mapping[str, Any]) -> 'Lift':
+        """Inverse of `to_dict`; a missing field is named."""
+        for name in ('lift_id', 'source', 'start', 'end', 'box_mass', 'report'):
+            if name not in fields:
+                raise MotionError(f'lift.{name}: missing')
+        prefix = 'motion.'
+        motion = BodyMotion.from_dict({name.removeprefix(prefix): fields[name]
+                                       for name in fields if name.startswith(prefix)})
+        return cls(str(fields['lift_id']), str(fields['source']), float(fields['start']),
+                   float(fields['end']), float(fields['box_mass']), motion,
+                   SolveReport.from_dict(json.loads(str(fields['report']))))
 
     @property
     def window(self) -> BodyMotion:

@@ -86,7 +86,10 @@ class Calibration:
 
     @classmethod
     def from_dict(cls, fields: Mapping[str, Any]) -> 'Calibration':
-        """Inverse of `to_dict`."""
+        """Inverse of `to_dict`; a missing field is named."""
+        for name in ('marker_names', 'segments', 'local_offsets'):
+            if name not in fields:
+                raise SubjectError(f'calibration.{name}: missing')
         return cls(tuple(fields['marker_names']), tuple(fields['segments']),
                    np.asarray(fields['local_offsets'], dtype=np.float64).reshape(-1, 3),
                    dict(fields.get('lengths', {})), float(fields.get('residual_rms', 0.0)))
@@ -137,6 +140,9 @@ class Subject:
                 raise SubjectError(f'subject.{name}: {value:g} {unit} is outside of '
                                    f'{low:g} to {high:g} {unit}, the range this model accepts')
             object.__setattr__(self, name, value)
+        if not isinstance(self.lengths, Mapping):
+            raise SubjectError('subject.lengths: lengths by name are needed, '
+                               f'got {self.lengths!r}')
         lengths = {}
         for name, length in self.lengths.items():
             value = _real(f'lengths[{name}]', length)
@@ -145,6 +151,8 @@ class Subject:
                                    f'{LENGTH_RANGE[0]:g} to {LENGTH_RANGE[1]:g} m')
             lengths[str(name)] = value
         object.__setattr__(self, 'lengths', lengths)
+        if self.calibration is not None and not isinstance(self.calibration, Calibration):
+            raise SubjectError(f'subject.calibration: no calibration, got {self.calibration!r}')
 
     def to_dict(self) -> dict[str, Any]:
         """Plain dictionary (for YAML or JSON) of the subject."""
@@ -172,7 +180,7 @@ class Subject:
             raise SubjectError(f'subject.{missing[0]}: missing')
         values = dict(fields)
         calibration = values.get('calibration')
-        if calibration is not None and not isinstance(calibration, Calibration):
+        if isinstance(calibration, Mapping):
             values['calibration'] = Calibration.from_dict(calibration)
         values['lengths'] = values.get('lengths') or {}
         return cls(**values)

@@ -4,6 +4,7 @@
 
 import numpy as np
 import pytest
+
 from human_model.skeleton import Skeleton
 from human_model.skeleton_2d import Skeleton2D
 from human_model.skeleton_3d import Skeleton3D

@@ -8,6 +8,7 @@ package's chain table, so an error there shows.
 
 import numpy as np
 import pytest
+
 from human_model.compiled import GRAVITY
 from human_model.skeleton import ExternalForce
 
@@ -86,6 +87,7 @@ class Reference:
         self.data = self.model.createData()
 
     def attach(self, parameters, segment, joint, place):
+        """Fix a segment's inertia to a joint's frame, at a place in it."""
         i = parameters.index(segment)
         inertia = pin.Inertia(float(parameters.mass[i]), np.array(parameters.com[i]),
                               np.array(parameters.inertia[i]))

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from human_model import dh
 from human_model.dh import DHRow, dh_transform, load_chain
 from human_model.errors import ChainError
@@ -113,7 +114,7 @@ def test_neutral_posture_is_upright_with_level_soles(skeleton):
         assert frame[:3, :3] == pytest.approx(np.eye(3), abs=1e-12)
 
 
-def test_coordinates_are_in_the_named_order(man):
+def test_coordinates_are_in_the_named_order():
     arm = ('arm_flex', 'arm_add', 'arm_rot', 'elbow_flex', 'pro_sup', 'wrist_flex', 'wrist_dev')
     leg = ('hip_flexion', 'hip_adduction', 'hip_rotation', 'knee_angle', 'ankle_angle',
            'subtalar_angle', 'mtp_angle')

@@ -1,9 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""The thesis' recursion and the compiled Newton-Euler: mechanics by hand, and against each other."""
+"""The thesis' recursion and the compiled Newton-Euler, by hand and against each other."""
 
 import numpy as np
 import pytest
+
 from human_model import compiled
 from human_model.anthropometry import SegmentParameters
 from human_model.errors import ChainError
@@ -149,8 +150,6 @@ def test_pendulum(man):
                                     skeleton.vector({'knee_angle': acceleration}))
     expected = (i_yy + m * c**2) * acceleration + m * GRAVITY * c * np.sin(angle)
     assert tau[skeleton.index('knee_angle')] == pytest.approx(expected)
-    # The knee flexes backward, so the hip, positive forward, holds the opposite moment and the
-    # thigh's reaction to the shank's acceleration.
     assert tau[skeleton.index('ankle_angle')] == pytest.approx(0.0, abs=1e-12)
 
 
@@ -162,7 +161,7 @@ def test_double_pendulum(man):
     hip, knee = np.array([0.5, 1.2, -3.0]), np.array([0.9, -2.0, 4.0])  # q, qd, qdd
     a, b = hip, hip - knee  # from the vertical, forward positive
     tau_b = ((i2 + m2 * c2**2) * b[2] + m2 * c2 * GRAVITY * np.sin(b[0])
-             + m2 * length * c2 * (a[2] * np.cos(a[0] - b[0]) - a[1]**2 * np.sin(b[0] - a[0]) * -1))
+             + m2 * length * c2 * (a[2] * np.cos(b[0] - a[0]) + a[1]**2 * np.sin(b[0] - a[0])))
     tau_a = ((i1 + m1 * c1**2 + m2 * length**2) * a[2]
              + (m1 * c1 + m2 * length) * GRAVITY * np.sin(a[0])
              + m2 * length * c2 * (b[2] * np.cos(a[0] - b[0]) + b[1]**2 * np.sin(a[0] - b[0])))

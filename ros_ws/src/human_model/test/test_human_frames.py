@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from human_model import frames
 from human_model.errors import HumanModelError
 
@@ -81,5 +82,5 @@ def test_stacks_keep_their_shape(rng):
     (frames.matrix_from_quaternion, [0, 0, 1]), (frames.quaternion_from_matrix, np.zeros(3)),
 ])
 def test_wrong_shapes_are_refused(function, value):
-    with pytest.raises(HumanModelError, match='shape|length'):
+    with pytest.raises(HumanModelError, match=r'shape|length'):
         function(value)

@@ -6,6 +6,7 @@ import io
 
 import numpy as np
 import pytest
+
 from human_model.errors import MotionError
 from human_model.motion import BodyMotion, Lift, concatenate
 from human_model.report import SolveReport
@@ -88,6 +89,15 @@ def test_missing_field_is_named(motion):
 def test_lift_cuts_its_window(motion):
     lift = Lift('7', 'measured', 0.02, 0.05, 7.0, motion, SolveReport())
     assert lift.window.time == pytest.approx([0.02, 0.03, 0.04, 0.05])
+    file = io.BytesIO()
+    np.savez(file, **lift.to_dict())
+    file.seek(0)
+    with np.load(file) as stored:
+        again = Lift.from_dict(stored)
+    assert (again.lift_id, again.end, again.report) == ('7', 0.05, SolveReport())
+    assert np.array_equal(again.motion.position, motion.position)
+    with pytest.raises(MotionError, match=r'lift\.lift_id: missing'):
+        Lift.from_dict({})
     for changes, words in (({'source': 'guessed'}, 'lift.source'), ({'end': 0.01}, 'lift.end'),
                            ({'box_mass': -1.0}, 'lift.box_mass'), ({'lift_id': ''}, 'lift_id')):
         with pytest.raises(MotionError, match=words):

@@ -6,6 +6,7 @@ import time
 
 import numpy as np
 import pytest
+
 from human_model import compiled
 from human_model.errors import AnthropometryError, ChainError, MotionError
 from human_model.frames import matrix_from_quaternion

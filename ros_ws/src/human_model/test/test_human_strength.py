@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from human_model.compiled import GRAVITY
 from human_model.errors import StrengthError
 from human_model.skeleton_3d import Skeleton3D

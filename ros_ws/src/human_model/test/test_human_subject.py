@@ -4,6 +4,7 @@
 
 import numpy as np
 import pytest
+
 from human_model.errors import SubjectError
 from human_model.report import SolveReport, SolveStatus
 from human_model.subject import Calibration, Subject
@@ -32,6 +33,8 @@ def test_subject_there_and_back():
     ('sex', 'm', "subject.sex.*'m'"),
     ('pseudonym', ' ', 'subject.pseudonym'),
     ('lengths', {'thigh': 41.0}, r'subject.lengths\[thigh\]: 41 m'),
+    ('lengths', 0.4, 'subject.lengths: lengths by name.*0.4'),
+    ('calibration', 'mine', "subject.calibration.*'mine'"),
 ])
 def test_bad_fields_are_named(field, value, words):
     with pytest.raises(SubjectError, match=words):
@@ -48,6 +51,8 @@ def test_missing_and_unknown_fields_are_named():
 def test_calibration_refuses_what_does_not_belong_together():
     with pytest.raises(SubjectError, match='do not belong together'):
         Calibration(('a', 'b'), ('pelvis',), np.zeros((2, 3)))
+    with pytest.raises(SubjectError, match=r'calibration\.segments: missing'):
+        Calibration.from_dict({'marker_names': ['a']})
     with pytest.raises(SubjectError, match='twice'):
         Calibration(('a', 'a'), ('pelvis', 'pelvis'), np.zeros((2, 3)))
     with pytest.raises(SubjectError, match='not finite'):
