@@ -83,7 +83,7 @@ class DiscLoad:
 def disc_parameters(option: DiscOption) -> dict[str, float]:
     """Return an option's numbers by parameter name."""
     text = files('muscle_analyzer').joinpath('data/disc_frames.csv').read_text(encoding='utf-8')
-    rows = csv.DictReader(line for line in text.splitlines() if not line.startswith('#'))
+    rows = csv.DictReader(text.splitlines())
     return {row['parameter']: float(row['value']) for row in rows if row['option'] == option}
 
 

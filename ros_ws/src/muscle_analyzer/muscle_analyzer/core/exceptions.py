@@ -37,3 +37,7 @@ class InputArrayError(MuscleAnalyzerError):
 
 class OptionError(MuscleAnalyzerError):
     """An option has a value that cannot be used."""
+
+
+class ModelFileError(MuscleAnalyzerError):
+    """The musculoskeletal model's file is not installed."""

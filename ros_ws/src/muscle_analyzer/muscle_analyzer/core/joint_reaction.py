@@ -6,9 +6,8 @@ The reaction at a joint is what the Newton-Euler equations of everything that th
 over after weight, external loads and muscle forces (Steele et al. 2012, Gait Posture 35:556). Wrenches
 are (moment, force) about the ground's origin in ground axes, like everywhere in this package.
 
-Muscles enter as a list of entries: entry e says that a unit force of muscle `entry_muscle[e]` puts
-the wrench `entry_wrench[e]` on body `entry_body[e]`. A path has one entry for each body that it
-touches, so intermediate points and wrap surfaces count, not only origin and insertion.
+Muscles enter as the sum of what their paths do to each body (`muscle_paths.body_wrenches`): intermediate
+points and wrap surfaces count, not only origin and insertion.
 """
 
 from __future__ import annotations
@@ -24,7 +23,6 @@ from muscle_analyzer.core.kinematics import BodyState
 from muscle_analyzer.core.multibody import Tree
 
 Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 class NetMoment(NamedTuple):
@@ -47,28 +45,6 @@ class NetMoment(NamedTuple):
 
 
 @njit(cache=True)
-def muscle_wrenches(
-    n_bodies: int, entry_muscle: IntArray, entry_body: IntArray, entry_wrench: Array, force: Array
-) -> Array:
-    """Return the wrenches (n_b, 6) of all muscles on the bodies.
-
-    Parameters
-    ----------
-    n_bodies : int
-    entry_muscle, entry_body : (n_entries,) int arrays
-    entry_wrench : (n_entries, 6) array
-        Per unit force, see the module's header.
-    force : (n_muscles,) array
-        Tension of each muscle, N.
-    """
-    out = np.zeros((n_bodies, 6))
-    for e in range(entry_muscle.size):
-        for i in range(6):
-            out[entry_body[e], i] += force[entry_muscle[e]] * entry_wrench[e, i]
-    return out
-
-
-@njit(cache=True)
 def joint_reactions(tree: Tree, joint_wrench: Array, muscle_wrench: Array) -> Array:
     """Return the reaction wrench (n_b, 6) of the parent on each body at its joint, equation 4.11.
 
@@ -78,7 +54,7 @@ def joint_reactions(tree: Tree, joint_wrench: Array, muscle_wrench: Array) -> Ar
     joint_wrench : (n_b, 6) array
         Of `inverse_dynamics`: joint and muscles together.
     muscle_wrench : (n_b, 6) array
-        Of `muscle_wrenches`.
+        What all muscles do to the bodies, see `muscle_paths.body_wrenches`.
     """
     return joint_wrench - subtree_sum(tree, muscle_wrench)
 

@@ -1,0 +1,324 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Fits a tree's independent coordinates to points and orientations of bodies; compiled.
+
+Weighted least squares by a damped Gauss-Newton method (Levenberg 1944, Marquardt 1963) with bounds: a
+coordinate at its bound is left out of a step that would push it outwards.
+
+Where points say little about a coordinate (a straight elbow leaves the split of a turn between upper
+arm and forearm open), a weak pull towards a reference value decides, instead of noise.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from muscle_analyzer.core.kinematics import BodyState, body_jacobians, forward_kinematics
+from muscle_analyzer.core.multibody import Tree
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+# Damping relative to the mean diagonal of the normal matrix: first value, and the factors after an
+# accepted and a rejected step. They steer the way to the solution, not the solution.
+_FIRST_DAMPING = 1e-6
+_DAMPING_DOWN = 0.1
+_DAMPING_UP = 10.0
+_SMALLEST_DAMPING = 1e-12
+
+
+class Targets(NamedTuple):
+    """What is fitted, ground axes.
+
+    Attributes
+    ----------
+    point_body : (n_p,) int array
+    point_local : (n_p, 3) array
+        In the body's axes, m.
+    point : (n_p, 3) array
+        Where the points shall be, m.
+    point_weight : (n_p,) array
+        1 / m.
+    frame_body : (n_f,) int array
+    frame : (n_f, 3, 3) array
+        Orientations that the bodies shall have, ground <- body.
+    frame_weight : (n_f,) array
+        1 / rad.
+    reference : (n_q,) array
+        Value that each coordinate is weakly pulled to, rad or m.
+    reference_weight : (n_q,) array
+        1 / rad or 1 / m; 0 for no pull.
+    """
+
+    point_body: IntArray
+    point_local: Array
+    point: Array
+    point_weight: Array
+    frame_body: IntArray
+    frame: Array
+    frame_weight: Array
+    reference: Array
+    reference_weight: Array
+
+
+class Rates(NamedTuple):
+    """First or second time derivatives of what is fitted.
+
+    Attributes
+    ----------
+    point : (n_p, 3) array
+        m/s or m/s^2.
+    frame : (n_f, 3) array
+        Angular, rad/s or rad/s^2.
+    reference : (n_q,) array
+        rad/s or m/s, or per s again.
+    """
+
+    point: Array
+    frame: Array
+    reference: Array
+
+
+class PoseFit(NamedTuple):
+    """Result of a fit.
+
+    Attributes
+    ----------
+    q : (n_q,) array
+        Independent coordinates, rad or m.
+    iterations : int
+    cost : float
+        Half the sum of squared weighted misfits.
+    step : float
+        Largest coordinate change of the last step, rad or m.
+    converged : bool
+    """
+
+    q: Array
+    iterations: int
+    cost: float
+    step: float
+    converged: bool
+
+
+@njit(cache=True)
+def _rotation_vector(target: Array, actual: Array, out: Array) -> None:
+    """Write the turn that takes `target` to `actual`, ground axes, rad, into `out` (3,)."""
+    turn = actual @ target.T
+    out[0] = 0.5 * (turn[2, 1] - turn[1, 2])
+    out[1] = 0.5 * (turn[0, 2] - turn[2, 0])
+    out[2] = 0.5 * (turn[1, 0] - turn[0, 1])
+    sine = np.sqrt(out[0] ** 2 + out[1] ** 2 + out[2] ** 2)
+    cosine = 0.5 * (turn[0, 0] + turn[1, 1] + turn[2, 2] - 1.0)
+    if sine > 1e-9:
+        out *= np.arctan2(sine, cosine) / sine
+
+
+@njit(cache=True)
+def misfit(targets: Targets, state: BodyState) -> Array:
+    """Return the weighted misfits (3 n_p + 3 n_f,): points first, then rotation vectors."""
+    n_p = targets.point_body.size
+    n_f = targets.frame_body.size
+    out = np.empty(3 * (n_p + n_f))
+    for i in range(n_p):
+        b = targets.point_body[i]
+        for j in range(3):
+            place = state.position[b, j]
+            for k in range(3):
+                place += state.rotation[b, j, k] * targets.point_local[i, k]
+            out[3 * i + j] = targets.point_weight[i] * (place - targets.point[i, j])
+    for i in range(n_f):
+        at = 3 * (n_p + i)
+        _rotation_vector(
+            targets.frame[i], state.rotation[targets.frame_body[i]], out[at : at + 3]
+        )
+        out[at : at + 3] *= targets.frame_weight[i]
+    return out
+
+
+@njit(cache=True)
+def misfit_jacobian(tree: Tree, targets: Targets, state: BodyState) -> Array:
+    """Return the derivative (3 n_p + 3 n_f, n_q) of `misfit`, of rotations to first order."""
+    n_p = targets.point_body.size
+    n_f = targets.frame_body.size
+    n_q = tree.n_independent[0]
+    jacobian = body_jacobians(tree, state)
+    out = np.empty((3 * (n_p + n_f), n_q))
+    for i in range(n_p):
+        b = targets.point_body[i]
+        place = state.rotation[b] @ targets.point_local[i] + state.position[b]
+        x, y, z = place
+        weight = targets.point_weight[i]
+        for k in range(n_q):
+            wx, wy, wz = jacobian[b, 0, k], jacobian[b, 1, k], jacobian[b, 2, k]
+            out[3 * i, k] = weight * (jacobian[b, 3, k] + wy * z - wz * y)
+            out[3 * i + 1, k] = weight * (jacobian[b, 4, k] + wz * x - wx * z)
+            out[3 * i + 2, k] = weight * (jacobian[b, 5, k] + wx * y - wy * x)
+    for i in range(n_f):
+        b = targets.frame_body[i]
+        for j in range(3):
+            for k in range(n_q):
+                out[3 * (n_p + i) + j, k] = targets.frame_weight[i] * jacobian[b, j, k]
+    return out
+
+
+@njit(cache=True)
+def _damped_step(normal: Array, gradient: Array, free: NDArray[np.bool_], damping: float) -> Array:
+    """Return the step (n_q,) of the free coordinates, zero for the others."""
+    index = np.flatnonzero(free)
+    n = index.size
+    matrix = np.empty((n, n))
+    right = np.empty(n)
+    for i in range(n):
+        right[i] = -gradient[index[i]]
+        for j in range(n):
+            matrix[i, j] = normal[index[i], index[j]]
+        matrix[i, i] += damping
+    solution = np.linalg.solve(matrix, right)
+    step = np.zeros(gradient.size)
+    for i in range(n):
+        step[index[i]] = solution[i]
+    return step
+
+
+@njit(cache=True)
+def _cost(targets: Targets, residual: Array, q: Array) -> float:
+    pull = targets.reference_weight * (q - targets.reference)
+    return 0.5 * (np.dot(residual, residual) + np.dot(pull, pull))
+
+
+@njit(cache=True)
+def fit_pose(
+    tree: Tree,
+    targets: Targets,
+    start: Array,
+    lower: Array,
+    upper: Array,
+    fitted: NDArray[np.bool_],
+    tolerance: float,
+    max_iterations: int,
+) -> PoseFit:
+    """Return the coordinates that fit the targets best within their bounds.
+
+    Parameters
+    ----------
+    tree : Tree
+    targets : Targets
+    start : (n_q,) array
+        First guess, rad or m; coordinates that are not fitted stay there.
+    lower, upper : (n_q,) arrays
+        Bounds.
+    fitted : (n_q,) bool array
+    tolerance : float
+        Step below which the fit has converged, rad or m.
+    max_iterations : int
+    """
+    n_q = start.size
+    zero = np.zeros(n_q)
+    q = start.copy()
+    for k in range(n_q):
+        if fitted[k]:
+            q[k] = min(max(q[k], lower[k]), upper[k])
+    state = forward_kinematics(tree, q, zero, zero)
+    residual = misfit(targets, state)
+    cost = _cost(targets, residual, q)
+    relative_damping = _FIRST_DAMPING
+    size = np.inf
+    for iteration in range(1, max_iterations + 1):
+        jacobian = misfit_jacobian(tree, targets, state)
+        normal = jacobian.T @ jacobian
+        gradient = jacobian.T @ residual
+        for k in range(n_q):
+            weight = targets.reference_weight[k] ** 2
+            normal[k, k] += weight
+            gradient[k] += weight * (q[k] - targets.reference[k])
+        scale = np.trace(normal) / n_q
+        free = fitted.copy()
+        for k in range(n_q):
+            if (q[k] <= lower[k] and gradient[k] > 0.0) or (q[k] >= upper[k] and gradient[k] < 0.0):
+                free[k] = False
+        while True:
+            step = _damped_step(normal, gradient, free, relative_damping * scale)
+            trial = np.minimum(np.maximum(q + step, lower), upper)
+            size = np.max(np.abs(trial - q))
+            state = forward_kinematics(tree, trial, zero, zero)
+            residual = misfit(targets, state)
+            trial_cost = _cost(targets, residual, trial)
+            if trial_cost <= cost or size < tolerance:
+                break
+            relative_damping *= _DAMPING_UP
+        relative_damping = max(relative_damping * _DAMPING_DOWN, _SMALLEST_DAMPING)
+        if trial_cost <= cost:
+            q = trial
+            cost = trial_cost
+        if size < tolerance:
+            return PoseFit(q, iteration, cost, size, True)
+    return PoseFit(q, max_iterations, cost, size, False)
+
+
+@njit(cache=True)
+def map_rates(
+    tree: Tree,
+    targets: Targets,
+    q: Array,
+    fitted: NDArray[np.bool_],
+    velocity: Rates,
+    acceleration: Rates,
+) -> tuple[Array, Array]:
+    """Return rates and accelerations (n_q,) of the coordinates from those of points and frames.
+
+    The weighted least-squares solutions of J q' = v and J q'' = a - J' q' with the fit's weights: no
+    filter, hence no delay beyond that of v and a.
+
+    Parameters
+    ----------
+    tree : Tree
+    targets : Targets
+        Their places are not used.
+    q : (n_q,) array
+        The fitted coordinates.
+    fitted : (n_q,) bool array
+    velocity, acceleration : Rates
+        Of the points, frames and reference values.
+    """
+    n_q = q.size
+    n_p = targets.point_body.size
+    n_f = targets.frame_body.size
+    zero = np.zeros(n_q)
+    state = forward_kinematics(tree, q, zero, zero)
+    jacobian = misfit_jacobian(tree, targets, state)
+    normal = jacobian.T @ jacobian
+    damping = _SMALLEST_DAMPING * np.trace(normal) / n_q
+    pull = targets.reference_weight**2
+    for k in range(n_q):
+        normal[k, k] += pull[k]
+    wanted = np.empty(3 * (n_p + n_f))
+    for i in range(n_p):
+        wanted[3 * i : 3 * i + 3] = targets.point_weight[i] * velocity.point[i]
+    for i in range(n_f):
+        at = 3 * (n_p + i)
+        wanted[at : at + 3] = targets.frame_weight[i] * velocity.frame[i]
+    right = jacobian.T @ wanted + pull * velocity.reference
+    rate = _damped_step(normal, -right, fitted, damping)
+    # With zero coordinate accelerations the points' accelerations are J' q'.
+    moving = forward_kinematics(tree, q, rate, zero)
+    for i in range(n_p):
+        b = targets.point_body[i]
+        arm = moving.rotation[b] @ targets.point_local[i]
+        w = moving.angular_velocity[b]
+        bias = (
+            moving.acceleration[b]
+            + np.cross(moving.angular_acceleration[b], arm)
+            + np.cross(w, np.cross(w, arm))
+        )
+        wanted[3 * i : 3 * i + 3] = targets.point_weight[i] * (acceleration.point[i] - bias)
+    for i in range(n_f):
+        at = 3 * (n_p + i)
+        bias = moving.angular_acceleration[targets.frame_body[i]]
+        wanted[at : at + 3] = targets.frame_weight[i] * (acceleration.frame[i] - bias)
+    right = jacobian.T @ wanted + pull * acceleration.reference
+    return rate, _damped_step(normal, -right, fitted, damping)

@@ -1,0 +1,100 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""The musculoskeletal model of one subject: the generic model found, read, scaled and compiled."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from muscle_analyzer.core.body_points import BodyPoints, attach_points, scale_factors
+from muscle_analyzer.core.exceptions import ModelFileError
+from muscle_analyzer.core.kinematics import body_jacobians, forward_kinematics
+from muscle_analyzer.core.multibody import MultibodyModel, compile_model
+from muscle_analyzer.core.muscle_path_table import path_table
+from muscle_analyzer.core.muscle_paths import muscle_paths
+from muscle_analyzer.core.osim_model import OsimModel
+from muscle_analyzer.core.scaling import StrengthScaling, scale_model
+
+Array = NDArray[np.float64]
+
+# The lifting full-body model (Beaucage-Gauvreau et al. 2019) as adapted in the pose2sim wheel (BSD-3).
+_PACKAGE, _FILE = 'Pose2Sim', 'OpenSim_Setup/Model_Pose2Sim_muscles_flex.osim'
+
+
+@dataclass(frozen=True, eq=False)
+class SubjectModel:
+    """A subject's model.
+
+    Attributes
+    ----------
+    multibody : MultibodyModel
+    points : BodyPoints
+        The shared points and frames on its bodies.
+    factors : mapping of str to (3,) array
+        Scale factors of the bodies along their axes.
+    """
+
+    multibody: MultibodyModel
+    points: BodyPoints
+    factors: Mapping[str, Array]
+
+
+def lifting_model_path() -> Path:
+    """Return where the pose2sim wheel put the lifting full-body model.
+
+    Raises
+    ------
+    ModelFileError
+        If the wheel, or the file in it, is not installed.
+    """
+    spec = find_spec(_PACKAGE)
+    for place in (spec.submodule_search_locations or []) if spec else []:
+        path = Path(place) / _FILE
+        if path.is_file():
+            return path
+    raise ModelFileError(f'{_FILE} is not there: install the pose2sim wheel (pip, --no-deps)')
+
+
+def default_path_lengths(model: OsimModel) -> Array:
+    """Return the path lengths (n_muscles,) of a model in its default posture, m."""
+    multibody = compile_model(model)
+    zero = np.zeros(multibody.default.size)
+    state = forward_kinematics(multibody.tree, multibody.default, zero, zero)
+    jacobians = body_jacobians(multibody.tree, state)
+    table = path_table(multibody)
+    length: Array = muscle_paths(table, state.position, state.rotation, jacobians).length
+    return length
+
+
+def subject_model(
+    generic: OsimModel,
+    points: Mapping[str, Array],
+    mass: float,
+    strength: StrengthScaling = StrengthScaling.NONE,
+) -> SubjectModel:
+    """Scale a model to a subject and compile it.
+
+    Parameters
+    ----------
+    generic : OsimModel
+    points : mapping of str to (3,) array
+        The subject's shared points in upright standing with hanging arms (`human_model` skeleton at
+        zero coordinates), REP-103 axes, m.
+    mass : float
+        kg.
+    strength : StrengthScaling
+
+    Raises
+    ------
+    ScalingError
+        If points are missing or factors are not positive.
+    """
+    factors = scale_factors(compile_model(generic), points)
+    scaled = compile_model(scale_model(generic, factors, mass, default_path_lengths, strength))
+    return SubjectModel(scaled, attach_points(scaled, points), factors)

@@ -1,0 +1,275 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Takes a motion over from a skeleton of `human_model` to the musculoskeletal model.
+
+The two have different joints, so angles are not copied (the thesis does, section 4.1.2): the second
+model is fitted, frame by frame, to the first one's joint centres, hands, feet and trunk. Hands, feet
+and the trunk's orientation weigh most, because the box's and the ground's lever arms hang on them.
+
+Velocities and accelerations come from those of the skeleton's points by least squares (`map_rates`):
+the same way live and for a recorded lift, and without a filter, so without further delay.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from human_model.compiled import body_motion
+from human_model.frames import ROS_FROM_OPENSIM, matrix_from_quaternion, rotation_to_opensim
+from human_model.motion import FRAMES, POINTS, BodyMotion
+from human_model.skeleton import Skeleton
+from human_model.tree import TreeArrays
+from numba import njit
+from numpy.typing import NDArray
+
+from muscle_analyzer.core.body_points import upright_coordinates
+from muscle_analyzer.core.exceptions import TransferError
+from muscle_analyzer.core.kinematics import forward_kinematics
+from muscle_analyzer.core.pose_fit import Rates, Targets, fit_pose, map_rates, misfit
+from muscle_analyzer.core.subject_model import SubjectModel
+
+Array = NDArray[np.float64]
+
+# The skeletons have no neck: the head stays as it is on the thorax.
+HELD_COORDINATES = ('neck_flexion', 'neck_bending', 'neck_rotation')
+# The limbs' coordinates have the same names and meanings in both models: a weak pull to the skeleton's
+# values decides what the points leave open. So many radians weigh as much as one sigma of a point.
+REFERENCE_SIGMA = 0.2
+UNREFERENCED = ('pelvis_', 'L5_S1_', 'neck_')
+TOLERANCE = 1e-5
+MAX_ITERATIONS = 50
+# Points of a motion must be those of its skeleton, or its rates would belong to another motion.
+SAME_POINT = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class TransferredPose:
+    """One sample of a motion on the musculoskeletal model.
+
+    Attributes
+    ----------
+    q, qd, qdd : (n_q,) arrays
+        Independent coordinates in rad or m, rates, accelerations.
+    point_distance : (n_p,) array
+        Remaining distance of each point, m.
+    frame_angle : (n_f,) array
+        Remaining angle of each frame, rad.
+    iterations : int
+    converged : bool
+    at_limit : tuple of str
+        Coordinates at a limit of their range.
+    """
+
+    q: Array
+    qd: Array
+    qdd: Array
+    point_distance: Array
+    frame_angle: Array
+    iterations: int
+    converged: bool
+    at_limit: tuple[str, ...]
+
+
+class MotionTransfer:
+    """Fits a subject's musculoskeletal model to the motion of a skeleton, sample after sample.
+
+    Parameters
+    ----------
+    subject : SubjectModel
+    skeleton : Skeleton
+        The skeleton that the motions belong to (2D or 3D), of the same subject.
+
+    Raises
+    ------
+    TransferError
+        If the model lacks a coordinate that is held.
+    """
+
+    def __init__(self, subject: SubjectModel, skeleton: Skeleton) -> None:
+        self.subject = subject
+        self.skeleton = skeleton
+        model, points = subject.multibody, subject.points
+        names = model.coordinate_names
+        self._fitted = np.array([name not in HELD_COORDINATES for name in names])
+        clamped = {
+            c.name: c.clamped for joint in model.source.joints for c in joint.coordinates
+        }
+        bounded = self._fitted & np.array([clamped[name] for name in names])
+        self._lower = np.where(bounded, model.lower, -np.inf)
+        self._upper = np.where(bounded, model.upper, np.inf)
+        self._which_points = _positions(points.names, POINTS)
+        self._which_frames = _positions(points.frame_names, FRAMES)
+        self._segments = skeleton.point_segment[self._which_points]
+        self._locals = np.ascontiguousarray(skeleton.point_local[self._which_points])
+        self._frame_segments = skeleton.frame_segment[self._which_frames]
+        self._upright_q = upright_coordinates(model)
+        self._reference_weight = np.array(
+            [0.0 if name.startswith(UNREFERENCED) else 1.0 / REFERENCE_SIGMA for name in names]
+        )
+        self._same = _same_coordinates(names, skeleton.coordinates)
+        self._start: Array | None = None
+
+    def reset(self) -> None:
+        """Forget the last pose; the next fit starts from upright standing."""
+        self._start = None
+
+    def step(self, motion: BodyMotion, sample: int = 0) -> TransferredPose:
+        """Take over one sample; the fit starts from the sample before.
+
+        Raises
+        ------
+        TransferError
+            If the motion is of another skeleton, or its points are not those of this subject.
+        """
+        targets = self._targets(motion, sample)
+        tree = self.subject.multibody.tree
+        start = self._upright(targets) if self._start is None else self._start
+        fit = fit_pose(
+            tree, targets, start, self._lower, self._upper, self._fitted, TOLERANCE, MAX_ITERATIONS
+        )
+        point_v, frame_v, point_a, frame_a = _skeleton_rates(
+            self.skeleton.tree,
+            motion.position[sample].copy(),
+            motion.velocity[sample].copy(),
+            motion.acceleration[sample].copy(),
+            self._segments,
+            self._locals,
+            self._frame_segments,
+            ROS_FROM_OPENSIM,
+        )
+        at_limit = (fit.q <= self._lower) | (fit.q >= self._upper)
+        qd, qdd = map_rates(
+            tree,
+            targets,
+            fit.q,
+            self._fitted & ~at_limit,
+            Rates(point_v, frame_v, self._referenced(motion.velocity[sample])),
+            Rates(point_a, frame_a, self._referenced(motion.acceleration[sample])),
+        )
+        self._start = fit.q if fit.converged else None
+        distance, angle = self._remaining(targets, fit.q)
+        names = self.subject.multibody.coordinate_names
+        return TransferredPose(
+            q=fit.q,
+            qd=qd,
+            qdd=qdd,
+            point_distance=distance,
+            frame_angle=angle,
+            iterations=fit.iterations,
+            converged=fit.converged,
+            at_limit=tuple(n for n, limited in zip(names, at_limit, strict=True) if limited),
+        )
+
+    def _targets(self, motion: BodyMotion, sample: int) -> Targets:
+        if motion.coordinates != self.skeleton.coordinates:
+            raise TransferError(
+                f'motion of skeleton {motion.skeleton!r} does not have the coordinates of '
+                f'{self.skeleton.name!r}'
+            )
+        points = self.subject.points
+        place = motion.points[sample, _positions(points.names, motion.point_names)]
+        self._check_points(motion, sample, place)
+        frames = matrix_from_quaternion(
+            motion.frames[sample, _positions(points.frame_names, motion.frame_names)]
+        )
+        return Targets(
+            points.body,
+            points.local,
+            place @ ROS_FROM_OPENSIM,
+            1.0 / points.sigma,
+            points.frame_body,
+            rotation_to_opensim(frames) @ points.frame_upright,
+            1.0 / points.frame_sigma,
+            self._upright_q + self._referenced(motion.position[sample]),
+            self._reference_weight,
+        )
+
+    def _referenced(self, values: Array) -> Array:
+        """Return the skeleton's values (n_q,) of the model's coordinates, 0 where it has none."""
+        return np.where(self._same >= 0, values[self._same], 0.0)
+
+    def _check_points(self, motion: BodyMotion, sample: int, place: Array) -> None:
+        own = self.skeleton.point_array(motion.position[sample])[0, self._which_points]
+        off = np.linalg.norm(own - place, axis=1)
+        worst = int(np.argmax(off))
+        if off[worst] > SAME_POINT:
+            raise TransferError(
+                f'motion at {motion.time[sample]:.3f} s: point {self.subject.points.names[worst]!r} '
+                f'is {off[worst]:.4f} m away from the skeleton of the subject'
+            )
+
+    def _upright(self, targets: Targets) -> Array:
+        """Return upright standing at the place and with the heading of the target pelvis."""
+        model = self.subject.multibody
+        start = np.where(self._fitted, self._upright_q, model.default)
+        start = np.clip(start, self._lower, self._upper)
+        pelvis = self.subject.points.names.index('pelvis')
+        local = self.subject.points.local[pelvis]
+        place = targets.point[pelvis] - local
+        for name, value in zip(('pelvis_tx', 'pelvis_ty', 'pelvis_tz'), place, strict=True):
+            start[model.coordinate_index(name)] = value
+        forward = targets.frame[self.subject.points.frame_names.index('pelvis')][:, 0]
+        start[model.coordinate_index('pelvis_rotation')] = np.arctan2(-forward[2], forward[0])
+        return start
+
+    def _remaining(self, targets: Targets, q: Array) -> tuple[Array, Array]:
+        zero = np.zeros(q.size)
+        state = forward_kinematics(self.subject.multibody.tree, q, zero, zero)
+        off = misfit(targets, state).reshape(-1, 3)
+        size = np.linalg.norm(off, axis=1)
+        n_p = targets.point_weight.size
+        return size[:n_p] / targets.point_weight, size[n_p:] / targets.frame_weight
+
+
+def _same_coordinates(names: tuple[str, ...], skeleton: tuple[str, ...]) -> NDArray[np.int64]:
+    """Return for each coordinate its place in the skeleton's, also without its side, or -1."""
+    return np.array(
+        [
+            next((skeleton.index(n) for n in (name, name[:-2]) if n in skeleton), -1)
+            for name in names
+        ],
+        dtype=np.int64,
+    )
+
+
+def _positions(wanted: tuple[str, ...], names: tuple[str, ...]) -> NDArray[np.int64]:
+    if missing := [name for name in wanted if name not in names]:
+        raise TransferError(f'point or frame {missing[0]!r} is not among those of the motion')
+    return np.array([names.index(name) for name in wanted], dtype=np.int64)
+
+
+@njit(cache=True)
+def _skeleton_rates(
+    tree: TreeArrays,
+    q: Array,
+    qd: Array,
+    qdd: Array,
+    segment: NDArray[np.int64],
+    local: Array,
+    frame_segment: NDArray[np.int64],
+    axes: Array,
+) -> tuple[Array, Array, Array, Array]:
+    """Return velocity of points and frames, then accelerations, in OpenSim's axes.
+
+    `axes` is the matrix that turns OpenSim's axes into the skeleton's.
+    """
+    rotation, _, _, omega, alpha, velocity, acceleration = body_motion(tree, q, qd, qdd)
+    n_p = segment.size
+    n_f = frame_segment.size
+    v = np.empty((n_p, 3))
+    a = np.empty((n_p, 3))
+    w = np.empty((n_f, 3))
+    al = np.empty((n_f, 3))
+    for i in range(n_p):
+        b = tree.segment_body[segment[i]]
+        arm = rotation[b] @ (tree.segment_offset[segment[i]] + local[i])
+        v[i] = velocity[b] + np.cross(omega[b], arm)
+        a[i] = (
+            acceleration[b] + np.cross(alpha[b], arm) + np.cross(omega[b], np.cross(omega[b], arm))
+        )
+    for i in range(n_f):
+        b = tree.segment_body[frame_segment[i]]
+        w[i] = omega[b]
+        al[i] = alpha[b]
+    return v @ axes, w @ axes, a @ axes, al @ axes
