@@ -168,6 +168,7 @@ class Outline(HTMLParser):
         self.open, self.ids, self.references, self.texts = [], [], [], []
 
     def handle_starttag(self, tag, attributes):
+        """Note one piece of the page."""
         if tag not in self.VOID:
             self.open.append(tag)
         for name, value in attributes:
@@ -177,14 +178,17 @@ class Outline(HTMLParser):
                 self.references.append(value)
 
     def handle_startendtag(self, tag, attributes):
+        """Note one piece of the page."""
         self.handle_starttag(tag, attributes)
         if tag not in self.VOID:
             self.open.pop()
 
     def handle_endtag(self, tag):
+        """Note one piece of the page."""
         assert self.open.pop() == tag
 
     def handle_data(self, data):
+        """Note one piece of the page."""
         self.texts.append(data)
 
 

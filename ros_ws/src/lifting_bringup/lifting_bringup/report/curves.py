@@ -5,9 +5,9 @@
 from __future__ import annotations
 
 import numpy as np
-from injury_monitor.core.torque_index import torque_index
 from matplotlib.axes import Axes
 
+from injury_monitor.core.torque_index import torque_index
 from lifting_bringup.report.data import JOINTS, Array, GroundForces, JointAngles, Pair, Torques
 from lifting_bringup.report.style import (
     COLOURS,

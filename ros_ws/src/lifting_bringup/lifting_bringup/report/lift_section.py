@@ -29,8 +29,8 @@ ZONES = {'nominal': 'nominal risk', 'action': 'needs controls', 'hazardous': 'no
 CRITERIA = {
     'compression_action': 'NIOSH action limit',
     'compression_maximum': 'NIOSH maximum permissible limit',
-    'shear_occasional': 'shear limit, up to 100 loads a day',
-    'shear_frequent': 'shear limit, above 100 loads a day',
+    'shear_occasional': 'limit up to 100 loads a day',
+    'shear_frequent': 'limit above 100 loads a day',
     'torque_index': 'whole dynamic strength', 'activation_index': 'activation held'}
 _NAMES = {'measured': 'recorded lift', 'predicted': 'optimal lift'}
 
@@ -168,8 +168,8 @@ def _muscles(lift: LiftReport, name: str) -> str:
     return _drawn(
         'Muscle activations', lift.activations,
         lambda: loads.muscle_activations(lift.activations, f'{name}-muscles'),
-        'Share of the muscle\'s strength in use. Thick: mean over all fascicles of both sides; '
-        'thin: the most active fascicle. Gaps: samples that did not solve.')
+        'Share of the strength of the muscle in use. Thick: mean over all fascicles of both '
+        'sides; thin: the most active fascicle. Gaps: samples that did not solve.')
 
 
 def _limits(lift: LiftReport) -> tuple[tuple[LimitLine, ...], tuple[LimitLine, ...]]:

@@ -3,8 +3,8 @@
 """What a reader must know about the models before acting on a number."""
 
 MODEL_LIMITS = (
-    'The limits are for populations. Being below one is no guarantee for a single person, and a '
-    'person\'s own tolerance depends on age, sex and health.',
+    'The limits are for populations. Being below one is no guarantee for a single person; '
+    'what one person tolerates depends on age, sex and health.',
     'L5-S1 compression and shear are computed, not measured. They depend on the orientation of '
     'the disc frame (the shaded band shows ten degrees of it), on the muscle strengths of the '
     'model and on co-contraction.',

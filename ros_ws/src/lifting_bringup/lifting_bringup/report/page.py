@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 from lifting_bringup.report.data import AlarmRow, Header, LiftReport, Missing, ReportData
@@ -132,13 +133,12 @@ def _lifts(data: ReportData) -> str:
 
 def _worst(lifts: tuple[LiftReport, ...]) -> int:
     """Return the number of the lift with the highest recorded compression."""
-    peaks = []
+    peaks: list[float] = []
     for lift in lifts:
         found = None if isinstance(lift.risk, Missing) else lift.risk.find(
             'compression_action', 'measured')
-        value = float('-inf') if found is None else found.value
-        peaks.append(value if value == value else float('-inf'))
-    return max(range(len(peaks)), key=peaks.__getitem__) if peaks else 0
+        peaks.append(-math.inf if found is None or math.isnan(found.value) else found.value)
+    return peaks.index(max(peaks)) if peaks else 0
 
 
 def _alarms(data: ReportData) -> str:

@@ -27,7 +27,7 @@ CSS = f"""
 * { box-sizing: border-box; }
 body { margin: 0; background: var(--page); color: var(--ink);
   font: 15px/1.5 system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu Sans", sans-serif; }
-svg text { font-family: system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu Sans", sans-serif; }
+svg text { font-family: inherit; }
 figure svg text { paint-order: stroke; stroke: var(--paper); stroke-width: 2.5px;
   stroke-linejoin: round; }
 main { max-width: 1080px; margin: 0 auto; padding: 28px 24px 60px; }
@@ -37,8 +37,8 @@ h3 { font-size: 16px; margin: 26px 0 6px; }
 p { margin: 6px 0; max-width: 76ch; }
 .lead { font-size: 16.5px; }
 .note, figcaption, .source { color: var(--soft); font-size: 13px; }
-.simulated { max-width: none; background: var(--action-back); color: var(--action); border: 1.5px solid
-  var(--action); border-radius: 8px; padding: 10px 16px; margin: 14px 0; font-size: 15px; }
+.simulated { max-width: none; background: var(--action-back); color: var(--action);
+  border: 1.5px solid var(--action); border-radius: 8px; padding: 10px 16px; margin: 14px 0; font-size: 15px; }
 .simulated strong { letter-spacing: 0.06em; }
 .facts { display: grid; grid-template-columns: repeat(auto-fit, minmax(165px, 1fr));
   gap: 10px 22px; margin: 18px 0 6px; padding: 16px 18px; background: var(--paper);

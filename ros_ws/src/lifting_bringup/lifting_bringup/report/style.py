@@ -13,6 +13,7 @@ import io
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
 import matplotlib as mpl
 from matplotlib.axes import Axes
@@ -42,7 +43,7 @@ DASHES: dict[str, str | tuple[int, tuple[int, ...]]] = {'measured': '-', 'predic
 #: Full width of a figure on the page [inch].
 WIDTH = 9.6
 
-_SETTINGS = {
+_SETTINGS: dict[Any, Any] = {
     'svg.fonttype': 'none', 'svg.hashsalt': 'report', 'font.family': 'DejaVu Sans',
     'font.size': 8.5, 'axes.titlesize': 9.5, 'axes.titleweight': 'bold',
     'axes.titlelocation': 'left', 'axes.labelsize': 8.5, 'xtick.labelsize': 8,
