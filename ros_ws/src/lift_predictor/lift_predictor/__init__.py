@@ -1,3 +1,3 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Predicts by optimal control how the recorded lift could be done with the least effort, and compares it with the measured lift."""
+"""Predicts how a recorded lift could be done with the least effort, and compares both."""

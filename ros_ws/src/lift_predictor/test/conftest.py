@@ -8,12 +8,12 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+
 from human_model.motion import Lift
 from human_model.report import SolveReport
 from human_model.subject import Subject
-
-from lift_predictor.core.evaluation import evaluate, sample
 from lift_predictor.core.bspline import RestToRestSpline
+from lift_predictor.core.evaluation import evaluate, sample
 from lift_predictor.core.kinematics import pelvis_motion, reach
 from lift_predictor.core.node_functions import node_functions
 from lift_predictor.core.parameters import JOINTS, LiftParameters
@@ -59,7 +59,9 @@ def make_lift(person: Person) -> MakeLift:
         last, _ = reach(shelf, np.radians([0.0, 50, 30, 5, 5, 0]), low, high, parameters)
         middle = 0.5 * (first + last) + np.radians([-5.0, -25, 10, 10, -15, 0])
         spline = RestToRestSpline(7)
-        control = np.stack([first, 0.7 * first + 0.3 * middle, middle, 0.7 * last + 0.3 * middle, last])
+        control = np.stack(
+            [first, 0.7 * first + 0.3 * middle, middle, 0.7 * last + 0.3 * middle, last]
+        )
         time = np.linspace(0.0, DURATION, round(100 * DURATION) + 1)
         q, dq, ddq = sample(spline, control, time / DURATION, DURATION)
         loads = evaluate(node_functions()['report'], q, dq, ddq, parameters)
@@ -114,4 +116,6 @@ def recorded_lift(person, parameters, time, coordinates, loads) -> Lift:
     motion = skeleton.body_motion(
         time, *full, ground_force=ground, hand_force=hands, box_position=box
     )
-    return Lift('lift_001', 'measured', 0.0, float(time[-1]), parameters.box_mass, motion, SolveReport())
+    return Lift(
+        'lift_001', 'measured', 0.0, float(time[-1]), parameters.box_mass, motion, SolveReport()
+    )

@@ -22,8 +22,9 @@ Array = NDArray[np.float64]
 class RestToRestSpline:
     """Cubic B-spline on [0, 1] that starts and ends at rest (equations 2.12 and 4.7).
 
-    Zero slope at both ends of a clamped spline means that the first two control points are equal, and the last two:
-    they are merged, so that equation 4.7 holds exactly and `n_control - 2` values per joint remain.
+    Zero slope at both ends of a clamped spline means that the first two control points are equal,
+    and the last two: they are merged, so that equation 4.7 holds exactly and `n_control - 2`
+    values per joint remain.
 
     Parameters
     ----------
@@ -41,7 +42,7 @@ class RestToRestSpline:
     def __post_init__(self) -> None:
         if self.n_control < MIN_CONTROL_POINTS:
             raise SplineError(
-                f'n_control = {self.n_control}: at least {MIN_CONTROL_POINTS} control points are needed'
+                f'n_control = {self.n_control}: at least {MIN_CONTROL_POINTS} are needed'
             )
 
     @property
@@ -124,7 +125,7 @@ def simpson_weights(n_nodes: int) -> Array:
     SplineError
         An even number of nodes, or fewer than 3.
     """
-    if n_nodes < 3 or n_nodes % 2 == 0:  # noqa: PLR2004
+    if n_nodes < 3 or n_nodes % 2 == 0:
         raise SplineError(f'n_nodes = {n_nodes}: an odd number of at least 3 is needed')
     weights = np.ones(n_nodes)
     weights[1:-1:2] = 4.0

@@ -35,7 +35,8 @@ class LiftComparison:
     vertical_force_pearson, horizontal_force_pearson : float
         Pearson r.
     measured_effort, predicted_effort : float
-        Integral of the squared normalised torques by the same model (first term of equation 2.11) [s].
+        Integral of the squared normalised torques by the same model (first term of equation 2.11)
+        [s].
     time : array, shape (n,)
         Samples of the recorded lift from its start [s].
     measured : SagittalLoads

@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compile the functions of the programme to machine code, once per machine, in a cache on disk.
 
-The cache is `$LIFT_CACHE`, else `$XDG_CACHE_HOME/lift_monitor`, else `~/.cache/lift_monitor`. A file's name carries a hash of
-everything that goes into it: the modules that define the functions, the grid, CasADi's version, compiler and flags. Two
-processes that build at once wait for each other (file lock); a library appears under its name only when it is complete.
+The cache is `$LIFT_CACHE`, else `$XDG_CACHE_HOME/lift_monitor`, else `~/.cache/lift_monitor`. A
+file's name carries a hash of everything that goes into it: the modules that define the functions,
+the grid, CasADi's version, compiler and flags. Two processes that build at once wait for each
+other (file lock); a library appears under its name only when it is complete.
 """
 
 from __future__ import annotations
@@ -27,7 +28,8 @@ import casadi as ca
 from lift_predictor.core.nlp import Grid, programme_functions
 
 SOURCES: Final = ('bspline.py', 'model_2d.py', 'nlp.py', 'node_functions.py', 'parameters.py')
-FLAGS: Final = ('-O2', '-fPIC', '-shared')
+FLAGS: Final = ('-O1', '-fPIC', '-shared')
+"""With -O2 the compiler takes twice as long for functions that are no faster."""
 COMPILE_TIMEOUT: Final = 300.0
 
 
@@ -75,18 +77,11 @@ def find_compiler() -> str | None:
     return None
 
 
-def build_programme(grid: Grid, compile_missing: bool = True) -> Programme:
+def build_programme(grid: Grid) -> Programme:
     """Load the compiled functions of a grid, compiling them first if the cache has none.
 
-    Without a C compiler, or if it fails, the functions run in CasADi's virtual machine (slower, same numbers) and `how`
-    says why.
-
-    Parameters
-    ----------
-    grid : Grid
-        Sizes of the programme.
-    compile_missing : bool
-        False: do not wait for the compiler, use the virtual machine when the cache has no library.
+    Without a C compiler, or if it fails, the functions run in CasADi's virtual machine (slower,
+    same numbers) and `how` says why.
     """
     start = time.perf_counter()
     compiler = find_compiler()
@@ -98,13 +93,12 @@ def build_programme(grid: Grid, compile_missing: bool = True) -> Programme:
         directory.mkdir(parents=True, exist_ok=True)
         library = directory / f'{name}.so'
         how = 'compiled functions from the cache'
-        if not library.exists() and not compile_missing:
-            return _virtual_machine(grid, start, 'not compiled yet')
         if not library.exists() and _compile_locked(grid, compiler, library):
             how = f'functions compiled with {compiler}'
     except (OSError, subprocess.SubprocessError) as error:
         return _virtual_machine(grid, start, _reason(error))
-    functions = {f: ca.external(f, str(library)) for f in ('nlp_g', 'nlp_grad_f', 'nlp_jac_g', 'report')}
+    names = ('nlp_grad_f', 'nlp_jac_g', 'report')
+    functions = {name: ca.external(name, str(library)) for name in names}
     return Programme(grid, library, functions, time.perf_counter() - start, how)
 
 
@@ -127,7 +121,7 @@ def _version(compiler: str) -> str:
 
 
 def _compile_locked(grid: Grid, compiler: str, library: Path) -> bool:
-    """Compile into the cache unless another process has just done so; return whether it was done here."""
+    """Compile into the cache; False if another process has just done so."""
     with library.with_suffix('.lock').open('w') as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         if library.exists():
@@ -140,7 +134,10 @@ def _compile_locked(grid: Grid, compiler: str, library: Path) -> bool:
             built = Path(scratch) / 'programme.so'
             subprocess.run(
                 [compiler, *FLAGS, str(Path(scratch) / 'programme.c'), '-o', str(built), '-lm'],
-                capture_output=True, text=True, timeout=COMPILE_TIMEOUT, check=True,
+                capture_output=True,
+                text=True,
+                timeout=COMPILE_TIMEOUT,
+                check=True,
             )
             built.replace(library)
         return True

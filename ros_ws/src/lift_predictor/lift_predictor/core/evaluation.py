@@ -50,7 +50,9 @@ class SagittalLoads:
     centres: Array
 
 
-def evaluate(report: Any, q: Array, dq: Array, ddq: Array, parameters: LiftParameters) -> SagittalLoads:
+def evaluate(
+    report: Any, q: Array, dq: Array, ddq: Array, parameters: LiftParameters
+) -> SagittalLoads:
     """Run the model over n instants.
 
     Parameters
@@ -85,6 +87,6 @@ def evaluate(report: Any, q: Array, dq: Array, ddq: Array, parameters: LiftParam
 def sample(
     spline: RestToRestSpline, control: Array, s: Array, duration: float
 ) -> tuple[Array, Array, Array]:
-    """Joint coordinates of a spline at normalised times s (n,): q, dq, ddq, shape (n, 6) each, by real time."""
+    """Evaluate a spline at normalised times s (n,): q, dq, ddq by real time, (n, 6) each."""
     q, dq, ddq = (spline.basis(s, derivative) @ control for derivative in range(3))
     return q, dq / duration, ddq / duration**2

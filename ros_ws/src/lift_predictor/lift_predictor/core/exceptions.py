@@ -12,7 +12,7 @@ class SplineError(LiftPredictorError):
 
 
 class TaskError(LiftPredictorError):
-    """A lift, box or subject does not describe a sagittal lifting task; names the field and value."""
+    """The input does not describe a sagittal lifting task; names field and value."""
 
 
 class AsymmetricLiftError(TaskError):
@@ -20,4 +20,4 @@ class AsymmetricLiftError(TaskError):
 
 
 class UnreachableError(LiftPredictorError):
-    """The hands cannot be brought where the task wants them, within the joint limits and postures."""
+    """The hands cannot be brought where the task wants them."""

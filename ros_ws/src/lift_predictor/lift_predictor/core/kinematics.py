@@ -33,8 +33,8 @@ class ChainPositions:
     box : array, shape (n, 2)
         Box centre.
     gaps : array, shape (n, 12)
-        Distance of the box centre from each collision circle's centre less both radii (equation 4.5) [m]; infinite for
-        an unused circle.
+        Distance of the box centre from each collision circle's centre less both radii (equation
+        4.5) [m]; infinite for an unused circle.
     centre_of_mass : array, shape (n,)
         Of body and box, forward.
     """
@@ -49,7 +49,7 @@ class ChainPositions:
 def chain_positions(
     q: Array, parameters: LiftParameters, grip: Array | None = None
 ) -> ChainPositions:
-    """Positions of postures q, shape (n, 6) [rad]; the box hangs at a given grip (n, 2) [m] or at the model's own."""
+    """Positions of postures q (n, 6) [rad]; the box is at the model's or a given grip [m]."""
     q = np.atleast_2d(q)
     body = dict(zip(BODIES, parameters.body, strict=True))
     shank = -q[:, 5]
@@ -100,7 +100,9 @@ def chain_positions(
 def reach(
     grip: Array, reference: Array, lower: Array, upper: Array, parameters: LiftParameters
 ) -> tuple[Array, float]:
-    """Posture that brings the grip nearest to a point, then clear of the box, balanced and near a reference.
+    """Find the posture that brings the grip nearest to a point.
+
+    Among those that do, it is clear of the box, balanced, and near a reference.
 
     Parameters
     ----------
@@ -124,14 +126,17 @@ def reach(
 
     def residual(q: Array) -> Array:
         state = chain_positions(q, parameters)
-        return np.concatenate((
-            state.joints['hand'][0] - grip,
-            _CLEARANCE_WEIGHT * np.minimum(state.gaps[0], 0.0),
-            _BALANCE_WEIGHT * np.maximum((0.0, 0.0), (
-                rear - state.centre_of_mass[0], state.centre_of_mass[0] - front
-            )),
-            _POSTURE_WEIGHT * (q - reference),
-        ))
+        return np.concatenate(
+            (
+                state.joints['hand'][0] - grip,
+                _CLEARANCE_WEIGHT * np.minimum(state.gaps[0], 0.0),
+                _BALANCE_WEIGHT
+                * np.maximum(
+                    (0.0, 0.0), (rear - state.centre_of_mass[0], state.centre_of_mass[0] - front)
+                ),
+                _POSTURE_WEIGHT * (q - reference),
+            )
+        )
 
     start = np.clip(reference, lower, upper)
     solution = least_squares(residual, start, bounds=(lower - 1e-9, upper + 1e-9), xtol=1e-10)
@@ -143,7 +148,7 @@ def reach(
 def pelvis_motion(
     q: Array, dq: Array, ddq: Array, parameters: LiftParameters
 ) -> tuple[Array, Array, Array]:
-    """Pelvis coordinates (tx, ty, tilt) that follow from fixed feet, and their first and second derivatives.
+    """Pelvis coordinates (tx, ty, tilt) that follow from fixed feet, with two derivatives.
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""A motion of the sagittal model as a block of body motion in the laboratory, with the forces on feet and hands."""
+"""A motion of the sagittal model as body motion in the laboratory, with all forces on it."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from dataclasses import replace
 from typing import Final
 
 import numpy as np
-from human_model.frames import matrix_from_quaternion, quaternion_from_matrix
-from human_model.motion import POINTS, BodyMotion
 from numpy.typing import NDArray
 
+from human_model.frames import matrix_from_quaternion, quaternion_from_matrix
+from human_model.motion import POINTS, BodyMotion
 from lift_predictor.core.evaluation import SagittalLoads
 from lift_predictor.core.kinematics import pelvis_motion
 from lift_predictor.core.parameters import JOINTS
@@ -24,15 +24,16 @@ SAMPLE_RATE: Final = 100.0
 
 
 def sample_times(duration: float) -> Array:
-    """Times from 0 to the duration, both included, as near to `SAMPLE_RATE` as fits [s]."""
+    """Return times from 0 to the duration [s], as near to `SAMPLE_RATE` as fits."""
     return np.linspace(0.0, duration, max(round(duration * SAMPLE_RATE), 1) + 1)
 
 
 def mtp_torque(task: LiftTask2D, loads: SagittalLoads) -> Array:
-    """Torque of the metatarsophalangeal joints (n,) [N m], dorsiflexion positive, both feet together.
+    """Torque of both metatarsophalangeal joints (n,) [N m], dorsiflexion positive.
 
-    The feet are flat: the ground's force acts on the hindfoot while the zero-moment point is behind the joint, and on the
-    toes when it is before it. The weight of the toes themselves is carried by the ground.
+    The feet are flat: the ground's force acts on the hindfoot while the zero-moment point is
+    behind the joint, and on the toes when it is before it. The weight of the toes themselves is
+    carried by the ground.
     """
     neutral = task.person.neutral
     joint = task.parameters.ankle[0] + (neutral['mtp_r'] - neutral['ankle_r'])[0]

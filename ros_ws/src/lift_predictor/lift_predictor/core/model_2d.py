@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Sagittal dynamics of body and box with the feet as the root of the chain.
 
-The feet are flat and fixed (equation 4.4), so the chain is built from the ankle up and equation 4.4 holds exactly: the six
-joints above are the only coordinates, the pelvis follows. Angles are measured counter-clockwise in the (forward, up) plane,
-which is OpenSim's positive rotation about the axis to the right.
+The feet are flat and fixed (equation 4.4), so the chain is built from the ankle up and equation
+4.4 holds exactly: the six joints above are the only coordinates, the pelvis follows. Angles are
+measured counter-clockwise in the (forward, up) plane, which is OpenSim's positive rotation about
+the axis to the right.
 """
 
 from __future__ import annotations
@@ -44,18 +45,16 @@ def chain_state(q: Any, dq: Any, ddq: Any, p: Any) -> ChainState:
     Returns
     -------
     ChainState
-        `torque` (6): generalised forces of the joints, both limbs together [N m]. `ground_force` (2): force of the
-        ground [N]; `ground_moment`: its moment about the point of the ground below the laboratory's origin, so that the
-        zero-moment point is moment / vertical force. `hand_force` (2): force of the box on both hands [N].
-        `clearance`: (d / (r1 + r2))^2 - 1 of equation 4.5 for each collision circle; positive means clear, 1 for an
-        unused circle.
+        `torque` (6): generalised forces of the joints, both limbs together [N m]. `ground_force`
+        (2): force of the ground [N]; `ground_moment`: its moment about the point of the ground
+        below the laboratory's origin, so that the zero-moment point is moment / vertical force.
+        `hand_force` (2): force of the box on both hands [N]. `clearance`: (d / (r1 + r2))^2 - 1 of
+        equation 4.5 for each collision circle; positive means clear, 1 for an unused circle.
     """
     blocks = unpack(p)
     body = {name: blocks['body'][i] for i, name in enumerate(BODIES)}
     gravity = blocks['gravity'][0][0]
-    lumbar, arm, elbow, hip, knee, ankle = (
-        (q[i], dq[i], ddq[i]) for i in range(6)
-    )
+    lumbar, arm, elbow, hip, knee, ankle = ((q[i], dq[i], ddq[i]) for i in range(6))
     shank = _add((0.0, 0.0, 0.0), ankle, -1.0)
     thigh = _add(shank, knee, 1.0)
     pelvis = _add(thigh, hip, -1.0)
@@ -98,7 +97,8 @@ def chain_state(q: Any, dq: Any, ddq: Any, p: Any) -> ChainState:
         'forearm': 'elbow',
     }
     up = ca.vertcat(0.0, 1.0)
-    # The box is a point mass at the grip: it is carried level, its weight and inertia act at the hands during the whole lift.
+    # The box is a point mass at the grip: it is carried level, and its weight and inertia act at
+    # the hands during the whole lift.
     hand_force = -blocks['box_mass'][0][0] * (acceleration['hand'] + gravity * up)
     force = -hand_force
     moment = _cross(position['hand'], force)
@@ -117,8 +117,9 @@ def chain_state(q: Any, dq: Any, ddq: Any, p: Any) -> ChainState:
         total, about_origin = load[segment]
         return about_origin - _cross(position[joint], total)
 
-    # A coordinate's generalised force is the torque on the OpenSim child: the upper body of lumbar and arm joints, the
-    # lower one of hip and ankle; the knee's flexion turns the shank backwards, which flips the sign again.
+    # A coordinate's generalised force is the torque on the OpenSim child: the upper body of
+    # lumbar and arm joints, the lower one of hip and ankle; the knee's flexion turns the shank
+    # backwards, which flips the sign again.
     torque = ca.vertcat(
         at_joint('trunk', 'lumbar'),
         at_joint('upper_arm', 'shoulder'),
@@ -161,7 +162,7 @@ def strength(q: Any, v: Any, coefficients: list[Any]) -> Any:
 
 
 def torque_limits(q: Any, dq: Any, p: Any) -> tuple[Any, Any]:
-    """Lower and upper dynamic torque limits of the six joints (equations 2.15 and 2.18) [N m], 6 x 1 each."""
+    """Lower and upper dynamic torque limits (equations 2.18 and 2.15) [N m], 6 x 1 each."""
     blocks = unpack(p)
     lower = [strength(q[i], dq[i], row) for i, row in enumerate(blocks['strength_lower'])]
     upper = [strength(q[i], dq[i], row) for i, row in enumerate(blocks['strength_upper'])]

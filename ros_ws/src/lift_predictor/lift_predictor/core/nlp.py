@@ -2,16 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """The lift as a nonlinear programme (equations 2.10 to 2.12 and 4.1 to 4.8).
 
-The node functions are mapped over uniform time nodes and gathered into the programme by the constant matrices of the spline:
-gradient, Jacobian and Hessian are products of small dense blocks with them. Person and task are parameters, so that the
-functions depend on the numbers of control points and nodes only and are compiled once for everybody.
+The node functions are mapped over uniform time nodes and gathered into the programme by the
+constant matrices of the spline: gradient, Jacobian and Hessian are products of small dense blocks
+with them. Person and task are parameters, so that the functions depend on the numbers of control
+points and nodes only and are compiled once for everybody.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Final
 
 import casadi as ca
 import numpy as np
@@ -25,6 +26,12 @@ from lift_predictor.core.parameters import JOINTS, N_JOINTS, N_PARAMETERS, SHAPE
 Array = NDArray[np.float64]
 
 
+HAND_SCALE: Final = 0.01
+"""Unit of the hand position rows [m]: where no motion is feasible, IPOPT ends at the least sum of
+scaled violations, and 1 cm of reach should weigh as much as the whole range of a joint torque, or
+it would always be the reach that gives."""
+
+
 @dataclass(frozen=True)
 class Grid:
     """Sizes that fix the structure of the programme.
@@ -34,9 +41,9 @@ class Grid:
     n_control : int
         Control points per joint.
     n_nodes : int
-        Uniform time nodes of the constraints, and of Simpson's rule for the effort: an even number of intervals in each
-        spline piece, and so at least 2 (n_control - 3) + 1 nodes, as with fewer the optimiser finds motions that violate
-        the constraints between the nodes.
+        Uniform time nodes of the constraints, and of Simpson's rule for the effort: an even number
+        of intervals in each spline piece, and so at least 2 (n_control - 3) + 1 nodes, as with
+        fewer the optimiser finds motions that violate the constraints between the nodes.
 
     Raises
     ------
@@ -62,7 +69,7 @@ class Grid:
 
     @property
     def n_variables(self) -> int:
-        """Optimisation variables: the free control values, all joints of one control point together."""
+        """Optimisation variables: free control values, all joints of one point together."""
         return self.spline.n_free * N_JOINTS
 
     @property
@@ -78,7 +85,7 @@ class Grid:
             *(f'{row} at {when}' for when in percent for row in NODE_ROWS),
             *(f'joint angle limit (4.1) of {j} at {when}' for when in percent for j in JOINTS),
             *(
-                f'hand position (4.6) {axis} at the {end}'
+                f'hand position (4.6) {axis} at the {end} [cm]'
                 for end in ('start', 'end')
                 for axis in ('forward', 'up')
             ),
@@ -95,9 +102,13 @@ class LiftBounds:
     angle_lower, angle_upper : array, shape (6,)
         Joint limits (equation 4.1) [rad].
     posture_lower, posture_upper : array, shape (3, 6)
-        Posture at 0, T/2 and T (equation 4.8) [rad], joint limits included; infinite where it is free.
+        Posture at 0, T/2 and T (equation 4.8) [rad], joint limits included; infinite where it is
+        free.
     hand : array, shape (2, 2)
         Grip (forward, up) at start and end (equation 4.6) [m].
+    margin : array, shape (2, n_nodes, n_rows + 6), optional
+        Distance to keep from the lower and upper bounds of the node rows and joint angles, where
+        a solution was found to leave them between the nodes; none if omitted.
     """
 
     angle_lower: Array
@@ -105,6 +116,7 @@ class LiftBounds:
     posture_lower: Array
     posture_upper: Array
     hand: Array
+    margin: Array | None = None
 
     def variables(self, grid: Grid) -> tuple[Array, Array]:
         """Bounds of the variables: the postures at both ends, which are control points."""
@@ -116,24 +128,29 @@ class LiftBounds:
 
     def rows(self, grid: Grid) -> tuple[Array, Array]:
         """Bounds of the constraint rows, in the order of `Grid.row_names`."""
-        n = grid.n_nodes
-        lower = np.concatenate((
-            np.zeros(n * len(NODE_ROWS)),
-            np.tile(self.angle_lower, n),
-            self.hand.ravel(),
-            self.posture_lower[1],
-        ))
-        upper = np.concatenate((
-            np.tile(NODE_UPPER, n),
-            np.tile(self.angle_upper, n),
-            self.hand.ravel(),
-            self.posture_upper[1],
-        ))
+        n, n_rows = grid.n_nodes, len(NODE_ROWS)
+        margin = np.zeros((2, n, n_rows + N_JOINTS)) if self.margin is None else self.margin
+        lower = np.concatenate(
+            (
+                (np.zeros((n, n_rows)) + margin[0, :, :n_rows]).ravel(),
+                (self.angle_lower + margin[0, :, n_rows:]).ravel(),
+                self.hand.ravel() / HAND_SCALE,
+                self.posture_lower[1],
+            )
+        )
+        upper = np.concatenate(
+            (
+                (np.array(NODE_UPPER) - margin[1, :, :n_rows]).ravel(),
+                (self.angle_upper - margin[1, :, n_rows:]).ravel(),
+                self.hand.ravel() / HAND_SCALE,
+                self.posture_upper[1],
+            )
+        )
         return lower, upper
 
 
 def programme_functions(grid: Grid) -> list[Any]:
-    """Functions of the programme under the names that CasADi's solvers look for, and the report function.
+    """Build the programme's functions under the names that CasADi's solvers look for.
 
     Returns
     -------
@@ -160,7 +177,7 @@ def programme_functions(grid: Grid) -> list[Any]:
 
     effort, rows = node['node'].map(n)(z, p)
     f = duration * ca.dot(weights, effort.T)
-    g = stack(rows, [node['hand'](q, p) for q in q_ends])
+    g = stack(rows, [node['hand'](q, p) / HAND_SCALE for q in q_ends])
 
     effort_j, rows_j, d_effort, d_rows = node['node_jac'].map(n)(z, p)
     f_j = duration * ca.dot(weights, effort_j.T)
@@ -169,10 +186,10 @@ def programme_functions(grid: Grid) -> list[Any]:
     hand_values, hand_rows = [], []
     for end, q in enumerate(q_ends):
         value, slope = node['hand_jac'](q, p)
-        hand_values.append(value)
+        hand_values.append(value / HAND_SCALE)
         before = ca.DM(2, 0 if end == 0 else grid.n_variables - N_JOINTS)
         after = ca.DM(2, grid.n_variables - N_JOINTS if end == 0 else 0)
-        hand_rows.append(ca.horzcat(before, slope, after))
+        hand_rows.append(ca.horzcat(before, slope / HAND_SCALE, after))
     g_j = stack(rows_j, hand_values)
     jac_g = ca.vertcat(ca.mtimes(blocks, gather), angles, *hand_rows, middle)
 
@@ -183,7 +200,9 @@ def programme_functions(grid: Grid) -> list[Any]:
     hess = ca.mtimes(ca.mtimes(gather.T, ca.diagcat(*ca.horzsplit(hessians, N_NODE))), gather)
     first_hand = n * (n_rows + N_JOINTS)
     ends = [
-        node['hand_hess'](q, p, lam_g[first_hand + 2 * end : first_hand + 2 * end + 2])
+        node['hand_hess'](
+            q, p, lam_g[first_hand + 2 * end : first_hand + 2 * end + 2] / HAND_SCALE
+        )
         for end, q in enumerate(q_ends)
     ]
     between = grid.n_variables - 2 * N_JOINTS
@@ -203,7 +222,7 @@ def programme_functions(grid: Grid) -> list[Any]:
             ['x', 'p', 'lam_f', 'lam_g'],
             ['triu_hess_gamma_x_x'],
         ),
-        # CasADi asks for this one at start-up; sensitivities to the parameters are not used and left out.
+        # CasADi asks for this one at start-up; sensitivities to the parameters are left out.
         ca.Function(
             'nlp_grad',
             [x, p, lam_f, lam_g],

@@ -56,15 +56,17 @@ def node_functions() -> dict[str, Any]:
     Returns
     -------
     dict
-        `node(z, p)` -> effort, rows; `node_jac` adds their derivatives by z; `node_hess(z, p, sigma, multiplier)` -> Hessian
-        of sigma effort + multiplier' rows; `hand`, `hand_jac`, `hand_hess` the same for the grip (q instead of z);
-        `report(q, dq, ddq, p)` -> `REPORT_OUTPUTS` in physical units.
+        `node(z, p)` -> effort, rows; `node_jac` adds their derivatives by z; `node_hess(z, p,
+        sigma, multiplier)` -> Hessian of sigma effort + multiplier' rows; `hand`, `hand_jac`,
+        `hand_hess` the same for the grip (q instead of z); `report(q, dq, ddq, p)` ->
+        `REPORT_OUTPUTS` in physical units.
 
     Notes
     -----
-    Effort is the integrand of the first term of equation 2.11, over the six joints above the feet (no strength of the
-    metatarsophalangeal joint is published). Rows are scaled to order 1: torques are 0 at the lower and 1 at the upper
-    dynamic limit, balance is divided by weight times foot length, collision by the squared sum of the radii.
+    Effort is the integrand of the first term of equation 2.11, over the six joints above the feet
+    (no strength of the metatarsophalangeal joint is published). Rows are scaled to order 1:
+    torques are 0 at the lower and 1 at the upper dynamic limit, balance is divided by weight times
+    foot length, collision by the squared sum of the radii.
     """
     p = ca.SX.sym('p', N_PARAMETERS)
     z = ca.SX.sym('z', N_NODE)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Everything about a person and a task as one vector, so that the compiled functions serve everybody."""
+"""Everything about a person and a task as one vector of the compiled functions."""
 
 from __future__ import annotations
 
@@ -25,7 +25,8 @@ JOINTS: Final = (
 """Joint coordinates of the chain above the fixed feet, in the order of the 2D skeleton."""
 
 BODIES: Final = ('foot', 'shank', 'thigh', 'pelvis', 'trunk', 'upper_arm', 'forearm')
-"""Segments from the ground up; paired ones count both sides. The trunk carries the head, the forearm the hand."""
+"""Segments from the ground up; paired ones count both sides. The trunk carries the head, the
+forearm the hand."""
 
 CIRCLE_BODIES: Final = ('shank', 'thigh', 'pelvis', 'trunk')
 """Segments that carry collision circles."""
@@ -55,22 +56,24 @@ N_PARAMETERS: Final = sum(rows * columns for rows, columns in SHAPES.values())
 
 @dataclass(frozen=True)
 class LiftParameters:
-    """Numbers of one person and one task. Plane coordinates are (forward, up) in the sagittal plane.
+    """Numbers of one person and one task; plane coordinates are (forward, up).
 
     Attributes
     ----------
     body : array, shape (7, 6)
-        Per segment of `BODIES`: mass [kg], centre of mass (forward, up) [m], inertia about it [kg m^2], next joint
-        (forward, up) [m]. Segment frames have their origin at the OpenSim-proximal joint (foot at the ankle, shank at
-        the knee, thigh and pelvis at the hip, trunk at the lumbar joint, upper arm at the shoulder, forearm at the
-        elbow) and are parallel to the world in upright standing. The next joint is the distal one of shank, thigh and
-        arm, the lumbar joint for the pelvis, the shoulder for the trunk, the grip for the forearm; unused for the foot.
+        Per segment of `BODIES`: mass [kg], centre of mass (forward, up) [m], inertia about it [kg
+        m^2], next joint (forward, up) [m]. Segment frames have their origin at the
+        OpenSim-proximal joint (foot at the ankle, shank at the knee, thigh and pelvis at the hip,
+        trunk at the lumbar joint, upper arm at the shoulder, forearm at the elbow) and are
+        parallel to the world in upright standing. The next joint is the distal one of shank, thigh
+        and arm, the lumbar joint for the pelvis, the shoulder for the trunk, the grip for the
+        forearm; unused for the foot.
     strength_lower, strength_upper : array, shape (6, 8)
-        Coefficients of equations 2.14 and 2.17 per joint in its own coordinate, [N m], z-score and both limbs included;
-        the lower ones give a negative torque.
+        Coefficients of equations 2.14 and 2.17 per joint in its own coordinate, [N m], z-score and
+        both limbs included; the lower ones give a negative torque.
     circle : array, shape (12, 3)
-        Three circles on each of `CIRCLE_BODIES`: centre in the segment frame (forward, up) [m], radius [m].
-        A radius that is not positive switches the circle off.
+        Three circles on each of `CIRCLE_BODIES`: centre in the segment frame (forward, up) [m],
+        radius [m]. A radius that is not positive switches the circle off.
     ankle : array, shape (2,)
         Ankle in the laboratory [m]; the feet are flat and do not move.
     support : array, shape (2,)

@@ -9,14 +9,14 @@ from dataclasses import dataclass
 from importlib.resources import files
 
 import numpy as np
+from numpy.typing import NDArray
+
 from human_model.anthropometry import SegmentParameters, body_dimensions
 from human_model.compiled import GRAVITY
 from human_model.inertia import combine
 from human_model.skeleton_2d import Skeleton2D
 from human_model.strength import JointStrength
 from human_model.subject import Subject
-from numpy.typing import NDArray
-
 from lift_predictor.core.exceptions import TaskError
 from lift_predictor.core.parameters import (
     BODIES,
@@ -101,7 +101,8 @@ class Person:
         Raises
         ------
         TaskError
-            Strength coefficients that can become negative: equations 2.16 and 2.19 would leave no torque at all.
+            Strength coefficients that can become negative: equations 2.16 and 2.19 would leave no
+            torque at all.
         """
         skeleton = Skeleton2D.of(subject) if segments is None else Skeleton2D(segments)
         strength = JointStrength(skeleton.name, subject, coefficient_set)
@@ -127,15 +128,15 @@ class Person:
 
 
 def _strength(strength: JointStrength, side: str) -> Array:
-    """Coefficients with magnitude and signs put in; the bells of equation 2.14 are even, so widths stay positive."""
+    """Coefficients with magnitude and signs put in; the bells of equation 2.14 are even."""
     rows = []
     for joint in JOINTS:
         bound = strength.bound(joint, side)
         c = np.array(bound.coefficients)
         if min(c[0], c[1], c[4], c[7]) < 0.0:
             raise TaskError(
-                f'{strength.coefficient_set}: {side} strength of {joint} has negative coefficients ({bound.source}); '
-                'the optimisation needs a set that cannot change sign'
+                f'{strength.coefficient_set}: {side} strength of {joint} has negative '
+                f'coefficients ({bound.source}); the optimisation needs a set that cannot change sign'
             )
         c[[0, 1, 4, 7]] *= bound.magnitude
         c[[2, 3]] /= bound.angle_factor, abs(bound.angle_factor)
@@ -153,7 +154,10 @@ def _bodies(skeleton: Skeleton2D, neutral: dict[str, Array]) -> Array:
             parts.append(('toes', neutral['mtp_r'] - neutral['ankle_r']))
         indices = [(parameters.index(part), at) for part, at in parts]
         mass, com, inertia = combine(
-            [(float(parameters.mass[i]), parameters.com[i] + at, parameters.inertia[i]) for i, at in indices]
+            [
+                (float(parameters.mass[i]), parameters.com[i] + at, parameters.inertia[i])
+                for i, at in indices
+            ]
         )
         offset = np.zeros(3)
         if name in _ENDS:

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from human_model.motion import Lift
-from human_model.report import SolveReport
 from numpy.typing import NDArray
 
+from human_model.motion import Lift
+from human_model.report import SolveReport
 from lift_predictor.core.parameters import JOINTS
 from lift_predictor.core.solver import Optimum
 from lift_predictor.core.verify import Verification

@@ -5,16 +5,16 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
+
 from human_model.anthropometry import SegmentParameters
 from human_model.errors import HumanModelError
 from human_model.motion import Lift
 from human_model.report import SolveReport, SolveStatus
 from human_model.subject import Subject
-
 from lift_predictor.core.comparison import LiftComparison, compare
 from lift_predictor.core.compiled import Programme, build_programme
 from lift_predictor.core.evaluation import evaluate, sample
@@ -29,6 +29,9 @@ from lift_predictor.core.task import POSTURE_TOLERANCE, Box, LiftTask2D, build_t
 from lift_predictor.core.verify import Verification, verify
 
 TIMED_OUT: Final = 'Maximum_WallTime_Exceeded'
+MARGIN_FACTOR: Final = 1.05
+"""Margin against a violation between the nodes, in units of the violation."""
+
 INFEASIBLE: Final = 'Infeasible_Problem_Detected'
 
 
@@ -47,9 +50,9 @@ class PredictorOptions:
     coefficient_set : str
         Published strength data, a name of `human_model.strength.coefficient_sets`.
     time_limit : float
-        Wall time of the whole prediction at most [s], building the functions apart.
+        Wall time of one IPOPT run at most, and time after which none is begun any more [s].
     refinements : int
-        How often the nodes are doubled when the dense grid shows a violation.
+        How often the lift is solved again with a margin when the dense grid shows a violation.
     """
 
     n_control: int = 7
@@ -57,7 +60,7 @@ class PredictorOptions:
     posture_tolerance: float = POSTURE_TOLERANCE
     coefficient_set: str = COEFFICIENT_SET
     time_limit: float = 10.0
-    refinements: int = 2
+    refinements: int = 3
 
 
 class LiftPredictor:
@@ -70,8 +73,8 @@ class LiftPredictor:
 
     Notes
     -----
-    Building loads the compiled functions (or compiles them, once per machine), so that `predict` has the optimiser
-    ready.
+    Building loads the compiled functions (or compiles them, once per machine), so that `predict`
+    has the optimiser ready.
     """
 
     def __init__(self, options: PredictorOptions | None = None) -> None:
@@ -80,10 +83,10 @@ class LiftPredictor:
         self.programme: Programme = build_programme(
             Grid(self.options.n_control, self.options.n_nodes)
         )
-        self._solvers: dict[Grid, LiftSolver] = {}
+        self._solver = LiftSolver(self.programme, self.options.time_limit)
 
     def configure(self, subject: Subject, segments: SegmentParameters | None = None) -> None:
-        """Set the subject, and the segments of the sagittal skeleton if they are not to be estimated.
+        """Set the subject, and the segments of the skeleton if they are not to be estimated.
 
         Raises
         ------
@@ -120,7 +123,7 @@ class LiftPredictor:
     def predict_and_compare(
         self, lift: Lift, box: Box
     ) -> tuple[PredictedLift2D, LiftComparison | None]:
-        """Solve the task of one recorded lift and compare both; no comparison without a solution."""
+        """Solve the task of one recorded lift; compare if there is a solution."""
         if self.person is None:
             raise TaskError('subject: none was configured before the first lift')
         begin = time.perf_counter()
@@ -145,20 +148,25 @@ class LiftPredictor:
         build_time = time.perf_counter() - begin
         deadline = begin + self.options.time_limit
         vector = task.parameters.pack()
-        optima = self._solver(grid).solve_all(vector, task.bounds, starts, deadline)
-        check: Verification | None = None
+        optima = self._solver.solve_all(vector, task.bounds, starts, deadline)
+        bounds, check = task.bounds, None
         for _ in range(self.options.refinements + 1):
             best = optima[0]
             if not best.converged:
                 break
             check = verify(
-                self.programme.functions['report'], grid, best.control, task.parameters, task.bounds
+                self.programme.functions['report'],
+                grid,
+                best.control,
+                task.parameters,
+                task.bounds,
             )
             if check.passed or time.perf_counter() > deadline:
                 break
-            grid = Grid(grid.n_control, 2 * grid.n_nodes - 1)
-            again = self._solver(grid).solve_all(vector, task.bounds, [best.as_start()], deadline)
-            optima = (*again, *optima) if again[0].converged else (again[0], *optima)
+            margin = 0.0 if bounds.margin is None else bounds.margin
+            bounds = replace(bounds, margin=margin + MARGIN_FACTOR * check.excess)
+            again = self._solver.solve(vector, bounds, best.as_start())
+            optima = (again, *optima)
         status, message = _judge(optima[0], check)
         notes = (*task.notes, self.programme.how)
         report = SolveReport(
@@ -221,14 +229,6 @@ class LiftPredictor:
         )
         comparison = compare(function, task, times, q, loads, optima[0].objective)
         return predicted, comparison
-
-    def _solver(self, grid: Grid) -> LiftSolver:
-        if grid not in self._solvers:
-            programme = self.programme
-            if grid != programme.grid:
-                programme = build_programme(grid, compile_missing=False)
-            self._solvers[grid] = LiftSolver(programme, self.options.time_limit)
-        return self._solvers[grid]
 
 
 def _judge(best: Optimum, check: Verification | None) -> tuple[SolveStatus, str]:

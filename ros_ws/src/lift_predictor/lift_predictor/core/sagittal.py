@@ -1,17 +1,17 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""A recorded motion seen from the side: the joint angles of the sagittal model, left and right averaged (section 4.3)."""
+"""A recorded motion seen from the side, left and right averaged (section 4.3)."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
-from human_model.frames import matrix_from_quaternion
-from human_model.motion import BodyMotion
 from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
+from human_model.frames import matrix_from_quaternion
+from human_model.motion import BodyMotion
 from lift_predictor.core.exceptions import TaskError
 
 Array = NDArray[np.float64]
@@ -49,7 +49,9 @@ class SagittalPlane:
         )
         forward = (toe - heel)[:2]
         if not np.linalg.norm(forward) > 0.0:
-            raise TaskError(f'heel and toe points coincide at {heel.tolist()}: the feet have no direction')
+            raise TaskError(
+                f'heel and toe points coincide at {heel.tolist()}: the feet have no direction'
+            )
         heading = float(np.arctan2(forward[1], forward[0]))
         left = np.array([-np.sin(heading), np.cos(heading)])
         return cls(heading, float(ankle[:2] @ left))
@@ -66,7 +68,7 @@ class SagittalPlane:
 
     def to_world(self, points: Array) -> Array:
         """Positions (..., 3) given in the plane's axes, turned and moved into the laboratory."""
-        return (points + np.array([0.0, self.lateral, 0.0])) @ self.rotation().T
+        return np.asarray((points + np.array([0.0, self.lateral, 0.0])) @ self.rotation().T)
 
 
 @dataclass(frozen=True)
@@ -96,12 +98,15 @@ class SagittalMotion:
     ground_force: Array
 
 
-def sagittal_motion(motion: BodyMotion, start: float, neutral: dict[str, Array], plane: SagittalPlane) -> SagittalMotion:
+def sagittal_motion(
+    motion: BodyMotion, start: float, neutral: dict[str, Array], plane: SagittalPlane
+) -> SagittalMotion:
     """Project a motion on its sagittal plane.
 
-    A limb segment's angle is that of the line between its joint centres in the plane, from its direction in upright
-    standing; the pelvis angle is that of its forward axis. The spine angle is that of the line from L5-S1 to the middle of the shoulders against the pelvis, so that shoulders
-    and hands stay where they were recorded although the recorded spine has more joints.
+    A limb segment's angle is that of the line between its joint centres in the plane, from its
+    direction in upright standing; the pelvis angle is that of its forward axis. The spine angle is
+    that of the line from L5-S1 to the middle of the shoulders against the pelvis, so that
+    shoulders and hands stay where they were recorded although the recorded spine has more joints.
 
     Parameters
     ----------
@@ -120,7 +125,9 @@ def sagittal_motion(motion: BodyMotion, start: float, neutral: dict[str, Array],
         Fewer than six samples: no accelerations.
     """
     if len(motion) < _MIN_SAMPLES:
-        raise TaskError(f'motion: {len(motion)} samples in the lift, at least {_MIN_SAMPLES} are needed')
+        raise TaskError(
+            f'motion: {len(motion)} samples in the lift, at least {_MIN_SAMPLES} are needed'
+        )
     sides = np.stack([_side_angles(motion, side, neutral, plane) for side in (0, 1)])
     q = sides.mean(axis=0)
     spline = make_interp_spline(motion.time, q, k=_SPLINE_DEGREE)

@@ -176,15 +176,18 @@ class LiftSolver:
     ) -> tuple[Optimum, ...]:
         """Run IPOPT from every start, as far as the time allows; the best comes first.
 
-        Converged runs come before the others, then the lower effort, or the smaller violation where none converged. The
-        first start always runs; later ones are left out after the deadline (on the clock of `time.perf_counter`).
+        Converged runs come before the others, then the lower effort, or the smaller violation
+        where none converged. The first start always runs; later ones are left out after the
+        deadline (on the clock of `time.perf_counter`).
         """
         runs: list[Optimum] = []
         for start in starts:
             if not runs or time.perf_counter() < deadline:
                 runs.append(self.solve(parameters, bounds, start))
         return tuple(
-            sorted(runs, key=lambda r: (not r.converged, r.objective if r.converged else r.violation))
+            sorted(
+                runs, key=lambda r: (not r.converged, r.objective if r.converged else r.violation)
+            )
         )
 
     def _name(self, index: int) -> str:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Initial guesses for the optimiser: several, as the programme has local minima (box round or in front of the knees)."""
+"""Initial guesses: several, as there are local minima (box round or in front of the knees)."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _ARC_POSTURES: Final = 9
 
 
 def make_starts(task: LiftTask2D, spline: RestToRestSpline) -> tuple[Start, ...]:
-    """Return the recorded lift, a smooth step, and an arc of the box clear of the body, as control values.
+    """Return the recorded lift, a smooth step, and an arc clear of the body, as control values.
 
     All begin and end with the postures that reach the box.
     """
@@ -33,7 +33,9 @@ def make_starts(task: LiftTask2D, spline: RestToRestSpline) -> tuple[Start, ...]
     recorded = recorded + (1.0 - step) * (first - recorded[0]) + step * (last - recorded[-1])
 
     plain = first + step * (last - first)
-    middle = np.clip(plain[_DENSE // 2], task.bounds.posture_lower[1], task.bounds.posture_upper[1])
+    middle = np.clip(
+        plain[_DENSE // 2], task.bounds.posture_lower[1], task.bounds.posture_upper[1]
+    )
     bump = (16.0 * s**2 * (1.0 - s) ** 2)[:, None]
     through_middle = plain + bump * (middle - plain[_DENSE // 2])
     return (
@@ -54,7 +56,7 @@ def _resampled(task: LiftTask2D, s: Array) -> Array:
 
 
 def _arc(task: LiftTask2D, spline: RestToRestSpline, s: Array, guide: Array) -> Array:
-    """Hands raised before they go forward, and pushed forward where the box would touch the body."""
+    """Raise the hands before they go forward; push them where the box would touch the body."""
     begin, finish = task.bounds.hand
     lower, upper = task.bounds.angle_lower, task.bounds.angle_upper
     at = np.linspace(0.0, 1.0, _ARC_POSTURES)
@@ -62,12 +64,16 @@ def _arc(task: LiftTask2D, spline: RestToRestSpline, s: Array, guide: Array) -> 
     postures = [task.ends[0]]
     for i in range(1, _ARC_POSTURES - 1):
         reference = np.array([np.interp(at[i], s, column) for column in guide.T])
-        grip = np.array([
-            begin[0] + (finish[0] - begin[0]) * w[i] ** 2,
-            begin[1] + (finish[1] - begin[1]) * w[i],
-        ])
+        grip = np.array(
+            [
+                begin[0] + (finish[0] - begin[0]) * w[i] ** 2,
+                begin[1] + (finish[1] - begin[1]) * w[i],
+            ]
+        )
         posture, _ = reach(grip, reference, lower, upper, task.parameters)
-        deficit = float(max(-chain_positions(posture, task.parameters, grip[None]).gaps.min(), 0.0))
+        deficit = float(
+            max(-chain_positions(posture, task.parameters, grip[None]).gaps.min(), 0.0)
+        )
         if deficit > 0.0:
             grip = grip + np.array([deficit, 0.0])
             posture, _ = reach(grip, reference, lower, upper, task.parameters)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""The task of one recorded lift: what the programme needs to know about box, feet, postures and time (section 4.3)."""
+"""The task of one recorded lift: box, feet, postures, time (section 4.3)."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from human_model.motion import BodyMotion, Lift
 from numpy.typing import NDArray
 
+from human_model.motion import BodyMotion, Lift
 from lift_predictor.core.exceptions import AsymmetricLiftError, TaskError, UnreachableError
 from lift_predictor.core.kinematics import chain_positions, reach
 from lift_predictor.core.nlp import LiftBounds
@@ -115,7 +115,8 @@ def build_task(
     TaskError
         The recording has no usable feet, postures or samples.
     AsymmetricLiftError
-        Right and left differ, or trunk or box turn out of the sagittal plane, by more than the posture tolerance.
+        Right and left differ, or trunk or box turn out of the sagittal plane, by more than the
+        posture tolerance.
     UnreachableError
         A hand target cannot be met within joint limits and posture tolerance.
     """
@@ -171,9 +172,10 @@ def _require_symmetry(
         half = 0.5 * np.abs(_at(measured, measured.side_difference, time))
         worst = int(np.argmax(half))
         if half[worst] > tolerance:
+            apart, allowed = np.degrees((2.0 * half[worst], 2.0 * tolerance))
             raise AsymmetricLiftError(
-                f'{JOINTS[worst]}: right and left are {np.degrees(2.0 * half[worst]):.0f} deg apart at the {when} of the '
-                f'lift; the sagittal model allows {np.degrees(2.0 * tolerance):.0f} deg'
+                f'{JOINTS[worst]}: right and left are {apart:.0f} deg apart at the {when} of the '
+                f'lift; the sagittal model allows {allowed:.0f} deg'
             )
     turn = plane.rotation().T
     across = (motion.point('shoulder_l') - motion.point('shoulder_r')) @ turn.T
@@ -188,8 +190,8 @@ def _require_symmetry(
     for what, angle in checks.items():
         if angle.max() > tolerance:
             raise AsymmetricLiftError(
-                f'{what} turns {np.degrees(angle.max()):.0f} deg out of the sagittal plane; the sagittal model allows '
-                f'{np.degrees(tolerance):.0f} deg'
+                f'{what} turns {np.degrees(angle.max()):.0f} deg out of the sagittal plane; '
+                f'the sagittal model allows {np.degrees(tolerance):.0f} deg'
             )
 
 
@@ -204,7 +206,8 @@ def _feet(motion: BodyMotion, plane: SagittalPlane) -> tuple[Array, Array]:
     for side, name in enumerate(('right', 'left')):
         if rear[side].max() >= front[side].min():
             raise TaskError(
-                f'the {name} foot moves {np.ptp(rear[side]):.2f} m during the lift: the feet must stay (equation 4.4)'
+                f'the {name} foot moves {np.ptp(rear[side]):.2f} m during the lift: '
+                'the feet must stay (equation 4.4)'
             )
     support = np.array([rear.mean(axis=1).min(), front.mean(axis=1).max()])
     return points['ankle'].mean(axis=(0, 1)), support
@@ -222,7 +225,7 @@ def _box_from_hand(motion: BodyMotion, plane: SagittalPlane, measured: SagittalM
 def _fit_circles(
     parameters: LiftParameters, measured: SagittalMotion
 ) -> tuple[LiftParameters, tuple[str, ...]]:
-    """Shrink circles the recorded lift itself went through: the person was there, so the body is thinner."""
+    """Shrink the circles that the recorded lift itself went through: the body is thinner."""
     gaps = chain_positions(measured.q, parameters, measured.grip).gaps.min(axis=0)
     circle = parameters.circle.copy()
     used = circle[:, 2] > 0.0
@@ -231,8 +234,8 @@ def _fit_circles(
     if not deep.any():
         return parameters, ()
     note = (
-        f'{int(deep.sum())} of {int(used.sum())} collision circles were reduced, as the recorded lift came up to '
-        f'{-1e3 * gaps[deep].min():.0f} mm closer'
+        f'{int(deep.sum())} of {int(used.sum())} collision circles were reduced, as the recorded '
+        f'lift came up to {-1e3 * gaps[deep].min():.0f} mm closer'
     )
     return replace(parameters, circle=circle), (note,)
 
@@ -245,8 +248,9 @@ def _bounds(person: Person, postures: Array, tolerance: float, hand: Array) -> L
             if lower[row, column] > upper[row, column]:
                 low, high = person.angle_lower[column], person.angle_upper[column]
                 raise TaskError(
-                    f'{joint} at the {when} of the lift: {np.degrees(postures[row, column]):.1f} deg is outside its '
-                    f'limits of {np.degrees(low):.1f} to {np.degrees(high):.1f} deg'
+                    f'{joint} at the {when} of the lift: {np.degrees(postures[row, column]):.1f} '
+                    f'deg is outside its limits of {np.degrees(low):.1f} to '
+                    f'{np.degrees(high):.1f} deg'
                 )
     return LiftBounds(person.angle_lower, person.angle_upper, lower, upper, hand)
 
@@ -260,9 +264,10 @@ def _reachable_ends(bounds: LiftBounds, postures: Array, parameters: LiftParamet
             span = upper - lower
             at_bound = (posture - lower < 0.01 * span) | (upper - posture < 0.01 * span)
             raise UnreachableError(
-                f'hand position (4.6) at the {INSTANTS[instant]}: the grip stays {1e3 * distance:.0f} mm from '
-                f'forward {bounds.hand[row, 0]:.3f} m, up {bounds.hand[row, 1]:.3f} m; joints at the end of the posture '
-                f'tolerance or of their range: {", ".join(np.array(JOINTS)[at_bound]) or "none"}'
+                f'hand position (4.6) at the {INSTANTS[instant]}: the grip stays '
+                f'{1e3 * distance:.0f} mm from forward {bounds.hand[row, 0]:.3f} m, up '
+                f'{bounds.hand[row, 1]:.3f} m; joints at the end of the posture tolerance or of '
+                f'their range: {", ".join(np.array(JOINTS)[at_bound]) or "none"}'
             )
         ends.append(posture)
     return np.stack(ends)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from lift_predictor.core.evaluation import evaluate, sample
 from lift_predictor.core.kinematics import chain_positions
 from lift_predictor.core.nlp import Grid, LiftBounds
+from lift_predictor.core.node_functions import NODE_UPPER
 from lift_predictor.core.parameters import JOINTS, LiftParameters
 
 Array = NDArray[np.float64]
@@ -29,7 +30,8 @@ TOLERANCE: Final[dict[str, float]] = {
     'static_ends [rad/s]': 1e-6,
     'posture [rad]': 1e-3,
 }
-"""Largest violation that passes: below what motion capture and force plates resolve (1 mm, 0.06 deg, 0.5 N m)."""
+"""Largest violation that passes: below what motion capture and force plates resolve (1 mm, 0.06
+deg, 0.5 N m)."""
 
 
 @dataclass(frozen=True)
@@ -44,15 +46,19 @@ class Verification:
         By the names of `TOLERANCE`, whose unit is in brackets; 0: none.
     worst : dict of str
         What is violated most in each family, and when; empty: nothing.
+    excess : array, shape (2, n_nodes, n_rows + 6)
+        How far node rows and joint angles leave their lower and upper bounds in the intervals on
+        both sides of each node; 0: nowhere.
     """
 
     n_points: int
     violation: dict[str, float]
     worst: dict[str, str]
+    excess: Array
 
     @property
     def passed(self) -> bool:
-        """Whether every family is within its tolerance."""
+        """Tell whether every family is within its tolerance."""
         return all(self.violation[name] <= limit for name, limit in TOLERANCE.items())
 
     def failures(self) -> str:
@@ -111,4 +117,17 @@ def verify(
         value = max(float(excess[row, column]), 0.0)
         violation[name] = value
         worst[name] = f'{labels[column]} at {100.0 * times[row]:.0f} %' if value > 0.0 else ''
-    return Verification(len(s), violation, worst)
+    values = np.hstack((loads.rows, q))
+    low = np.concatenate((np.zeros(loads.rows.shape[1]), bounds.angle_lower))
+    high = np.concatenate((NODE_UPPER, bounds.angle_upper))
+    excess = np.stack((_near_nodes(low - values), _near_nodes(values - high)))
+    return Verification(len(s), violation, worst, excess)
+
+
+def _near_nodes(excess: Array) -> Array:
+    """Largest positive excess (n_nodes, n) within one interval of each node, from dense values."""
+    inside = np.maximum(excess[:-1].reshape(-1, DENSITY, excess.shape[1]).max(axis=1), 0.0)
+    nodes = np.zeros((len(inside) + 1, excess.shape[1]))
+    nodes[:-1] = inside
+    nodes[1:] = np.maximum(nodes[1:], inside)
+    return nodes
