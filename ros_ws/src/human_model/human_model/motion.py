@@ -226,7 +226,7 @@ class Lift:
             raise MotionError(f'lift.box_mass: {self.box_mass} kg is no mass')
 
     def to_dict(self) -> dict[str, Any]:
-        """Fields by name, as `numpy.savez` takes them; those of the motion as ``motion.<name>``."""
+        """Fields by name, as `numpy.savez` takes them; the motion's as ``motion.<name>``."""
         fields: dict[str, Any] = {name: np.array(getattr(self, name)) for name in (
             'lift_id', 'source', 'start', 'end', 'box_mass')}
         fields['report'] = np.array(json.dumps(self.report.to_dict()))

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Subjects and skeletons the human model's tests share."""
 
+import hypothesis
 import numpy as np
 import pytest
 
@@ -9,6 +10,10 @@ from human_model.skeleton import Skeleton
 from human_model.skeleton_2d import Skeleton2D
 from human_model.skeleton_3d import Skeleton3D
 from human_model.subject import Subject
+
+# The machine that runs the suite may be busy: examples are fixed and have no deadline.
+hypothesis.settings.register_profile('human_model', deadline=None, derandomize=True)
+hypothesis.settings.load_profile('human_model')
 
 
 @pytest.fixture(scope='session')

@@ -20,7 +20,7 @@ from human_model.subject import Calibration, Subject
 from human_model.tables import length_sum, read_table
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.sampled_from(['male', 'female']), st.floats(45, 130), st.floats(1.45, 2.05))
 def test_segments_weigh_what_the_subject_weighs(sex, mass, stature):
     parameters = segment_parameters(Subject('p', sex, mass, stature, 30))
