@@ -1,0 +1,157 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Muscle paths of the lifting full-body model against OpenSim 4.6 and against derivatives.
+
+The reference files were made by ``reference/make_moment_arms.py``.
+"""
+
+from functools import cache
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+import pytest
+from muscle_analyzer.core.exceptions import UnsupportedElementError
+from muscle_analyzer.core.kinematics import body_jacobians, forward_kinematics
+from muscle_analyzer.core.multibody import compile_model
+from muscle_analyzer.core.muscle_path_table import path_table
+from muscle_analyzer.core.muscle_paths import body_wrenches, muscle_paths
+from muscle_analyzer.core.osim_reader import read_osim
+
+HERE = Path(__file__).parent
+SQUATS = HERE.parents[4] / 'shared' / 'data' / 'squats_bodyweight' / 'opensim46_reference'
+MODELS = {
+    'generic': Path(find_spec('Pose2Sim').submodule_search_locations[0])
+    / 'OpenSim_Setup'
+    / 'Model_Pose2Sim_muscles_flex.osim',
+    'squats': SQUATS / 'lfb_subject4.osim',
+}
+CASES = [
+    'generic',
+    pytest.param(
+        'squats',
+        marks=pytest.mark.skipif(
+            not SQUATS.is_dir(), reason=f'the squat recording is not there: {SQUATS}'
+        ),
+    ),
+]
+
+
+@cache
+def compiled(which):
+    return compile_model(read_osim(MODELS[which]))
+
+
+@cache
+def reference(which):
+    return dict(np.load(HERE / 'reference' / f'moment_arms_{which}.npz'))
+
+
+def paths_at(model, table, q):
+    zero = np.zeros_like(q)
+    bodies = forward_kinematics(model.tree, q, zero, zero)
+    jacobian = body_jacobians(model.tree, bodies)
+    return muscle_paths(table, bodies.position, bodies.rotation, jacobian)
+
+
+def our_paths(which, geodesic=False):
+    """Give lengths and moment arms at the reference postures, in the reference's order."""
+    model, data = compiled(which), reference(which)
+    names = list(model.coordinate_names)
+    order = [list(data['coordinates']).index(name) for name in names]
+    about = [names.index(name) for name in data['arm_coordinates']]
+    table = path_table(model, geodesic)
+    found = [paths_at(model, table, posture[order]) for posture in data['posture']]
+    assert [muscle.name for muscle in model.source.muscles] == list(data['muscles'])
+    lengths = np.array([paths.length for paths in found])
+    return lengths, np.array([paths.moment_arm[:, about] for paths in found])
+
+
+@pytest.mark.parametrize('which', CASES)
+def test_moment_arms_equal_opensim(which):
+    _, arms = our_paths(which)
+    data = reference(which)
+    error = np.abs(arms - data['moment_arm'])[np.abs(data['moment_arm']) > 1e-6]
+    assert np.median(error) < 1e-9
+    assert np.percentile(error, 99) < 0.15e-3
+    assert error.max() < 0.6e-3
+
+
+@pytest.mark.parametrize('which', CASES)
+def test_lengths_equal_opensim(which):
+    """
+    Compare lengths; of the gastrocnemii only loosely.
+
+    They wrap over two objects, and OpenSim then slides tangent points off the surface: its arc
+    is shorter than the straight line between its ends, by up to 4.3 mm in deep knee flexion.
+    """
+    lengths, _ = our_paths(which)
+    data = reference(which)
+    error = np.abs(lengths - data['length'])
+    twice = np.array([name.startswith('gas') for name in data['muscles']])
+    assert error[:, ~twice].max() < 0.15e-3
+    assert error[:, twice].max() < 4.5e-3
+    wrapped = {muscle.name for muscle in compiled(which).source.muscles if muscle.wraps}
+    free = np.array([name not in wrapped for name in data['muscles']])
+    assert error[:, free].max() < 1e-9
+
+
+@pytest.mark.parametrize('which', CASES)
+def test_geodesics_differ_from_opensim_by_millimetres_at_most(which):
+    _, arms = our_paths(which, geodesic=True)
+    assert np.abs(arms - reference(which)['moment_arm']).max() < 4.5e-3
+
+
+def test_moment_arms_are_minus_the_derivatives_of_the_lengths():
+    """Hold for straight paths and geodesics; ellipsoid paths are plane sections and differ."""
+    model, data = compiled('generic'), reference('generic')
+    table = path_table(model, geodesic=True)
+    names = list(model.coordinate_names)
+    order = [list(data['coordinates']).index(name) for name in names]
+    kinds = {o.name: o.kind for o in model.source.wrap_objects}
+    smooth = np.array(
+        [all(kinds[w.wrap_object] == 'cylinder' for w in m.wraps) for m in model.source.muscles]
+    )
+    assert smooth.sum() > 280
+    step = 1e-6
+    for posture in data['posture'][:4]:
+        q = posture[order]
+        arms = paths_at(model, table, q).moment_arm
+        derivative = np.empty_like(arms)
+        for j in range(q.size):
+            shift = step * (np.arange(q.size) == j)
+            longer = paths_at(model, table, q + shift).length
+            derivative[:, j] = (longer - paths_at(model, table, q - shift).length) / (2 * step)
+        error = np.abs(arms + derivative)[smooth]
+        assert error.max() < 1e-6
+
+
+def test_forces_on_the_bodies_balance_and_do_the_work_of_the_moment_arms():
+    model = compiled('generic')
+    table = path_table(model)
+    q = 0.5 * (model.lower + model.upper)
+    zero = np.zeros_like(q)
+    bodies = forward_kinematics(model.tree, q, zero, zero)
+    jacobian = body_jacobians(model.tree, bodies)
+    paths = muscle_paths(table, bodies.position, bodies.rotation, jacobian)
+    force = np.random.default_rng(1).uniform(0.0, 500.0, paths.length.size)
+    wrenches = body_wrenches(table, paths.wrench, force, len(model.body_names))
+    # A muscle pulls its bodies together: nothing is left for the whole.
+    assert np.abs(wrenches.sum(axis=0)).max() < 1e-9
+    torque = np.einsum('bi,bij->j', wrenches, jacobian)
+    assert torque == pytest.approx(paths.moment_arm.T @ force, abs=1e-9)
+
+
+def test_moving_path_points_are_refused(tmp_path):
+    text = MODELS['generic'].read_text(encoding='utf-8')
+    old = '<PathPoint name="addbrev_r-P1">'
+    begin = text.index(old)
+    end = text.index('</PathPoint>', begin)
+    point = text[begin:end].replace('<PathPoint', '<ConditionalPathPoint')
+    point += '<socket_coordinate>/jointset/hip_r/hip_flexion_r</socket_coordinate>'
+    point += '<range>-1 1</range></ConditionalPathPoint>'
+    path = tmp_path / 'conditional.osim'
+    path.write_text(text[:begin] + point + text[end + len('</PathPoint>') :], encoding='utf-8')
+    with pytest.raises(UnsupportedElementError, match='addbrev_r-P1 is conditional'):
+        path_table(compile_model(read_osim(path)))
