@@ -1,0 +1,328 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""From a results file to the data of the report page."""
+
+from __future__ import annotations
+
+import math
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+from lifting_interfaces.msg import Subject
+
+from human_model.errors import HumanModelError
+from human_model.report import SolveStatus
+from injury_monitor.core.alarm import AlarmState
+from injury_monitor.core.limits import Zone
+from lift_predictor.core.exceptions import LiftPredictorError
+from lift_predictor.core.person import Person
+from lifting_bringup import results_curves as curves
+from lifting_bringup.report.data import (
+    AlarmRow,
+    CriterionRow,
+    Header,
+    Lifting,
+    LiftReport,
+    Missing,
+    Pair,
+    QualityRow,
+    ReportData,
+    Risk,
+    SolveRow,
+)
+from lifting_bringup.report.page import build_report
+from lifting_bringup.results_file import (
+    MEASURED,
+    PREDICTED,
+    LiftMessages,
+    Results,
+    read_results,
+    seconds,
+)
+from lifting_node.conversions import subject_from_msg
+
+#: Stages whose solve reports are shown: name, topic, source.
+_STAGES = (
+    ('motion tracker', 'measured_lift', None),
+    ('lift predictor', 'predicted_lift', None),
+    ('comparison', 'lift_comparison', None),
+    ('muscle analyzer, recorded lift', 'muscle_analysis', MEASURED),
+    ('muscle analyzer, optimal lift', 'muscle_analysis', PREDICTED),
+)
+
+
+def write_report(results: Path, page: Path, run: str = 'online') -> Path:
+    """Write the report page of a results file; return its path."""
+    return build_report(report_data(read_results(results), run), page)
+
+
+def report_data(results: Results, run: str) -> ReportData:
+    """Return the data of the report page."""
+    remarks = [f'The results file is incomplete: {results.lost}.'] if results.lost else []
+    person: Person | Missing
+    try:
+        person = Person.of(subject_from_msg(results.subject))
+    except (HumanModelError, LiftPredictorError) as error:
+        person = Missing(f'the subject of the results file is refused: {error}')
+    lifts = tuple(
+        _lift(lift_id, entry, results, person)
+        for lift_id, entry in results.lifts.items()
+        if 'measured_lift' in entry.single
+    )
+    remarks += [
+        f'{lift_id}: the start of a lift was seen, but no complete lift followed.'
+        for lift_id, entry in results.lifts.items()
+        if 'measured_lift' not in entry.single
+    ]
+    return ReportData(
+        header=_header(results, run),
+        lifts=lifts or Missing('no lift was found in this recording'),
+        alarms=tuple(_alarm(message, results.start) for message in results.alarms),
+        recording_quality=_recording_quality(results),
+        remarks=tuple(remarks),
+    )
+
+
+def _header(results: Results, run: str) -> Header:
+    subject, task = results.subject, results.task
+    try:
+        release = version('lifting_bringup')
+    except PackageNotFoundError:
+        release = 'source'
+    return Header(
+        subject=subject.pseudonym,
+        sex='male' if subject.sex == Subject.SEX_MALE else 'female',
+        mass=subject.mass,
+        stature=subject.stature,
+        age=subject.age,
+        task=task.task_id,
+        description=task.description,
+        recording=str(results.path),
+        source=task.source,
+        simulated=bool(task.simulated),
+        box_mass=task.box_mass,
+        lifts_per_day=task.lifts_per_day,
+        lifts_per_minute=task.lifts_per_minute,
+        duration_hours=task.duration_hours,
+        run=run,
+        created=datetime.now(UTC).strftime('%Y-%m-%d %H:%M UTC'),
+        version=release,
+    )
+
+
+def _lift(
+    lift_id: str, entry: LiftMessages, results: Results, person: Person | Missing
+) -> LiftReport:
+    measured = entry.single['measured_lift']
+    start = seconds(measured.header.stamp)
+    box_size = results.task.box_size
+    motions = _motions(entry)
+    return LiftReport(
+        lift_id=lift_id,
+        start=start - results.start,
+        duration=measured.duration,
+        angles=_pair(motions, lambda lift: curves.joint_angles(lift, person)),
+        comparison=_comparison(entry),
+        ground=_pair(motions, curves.ground_forces),
+        torques=_torques(entry),
+        activations=_blocks(entry, 'muscle_analysis', curves.activations),
+        spine=_blocks(entry, 'spine_load', curves.spine_curves),
+        points=_pair(motions, lambda lift: curves.body_points(lift, box_size)),
+        risk=_risk(entry),
+        lifting=_lifting(entry),
+        solves=_solves(entry),
+        quality=_quality(entry),
+    )
+
+
+def _motions(entry: LiftMessages) -> Pair[Any]:
+    predicted = entry.single.get('predicted_lift')
+    return Pair(
+        measured=entry.single['measured_lift'],
+        predicted=_prediction_missing(predicted) or predicted,
+    )
+
+
+def _prediction_missing(predicted: Any) -> Missing | None:
+    if predicted is None:
+        return Missing('no prediction came')
+    if predicted.report.status != 0:
+        return Missing(f'the prediction failed: {predicted.report.message}')
+    return None
+
+
+def _pair(motions: Pair[Any], convert: Any) -> Pair[Any]:
+    return Pair(
+        *(
+            part if isinstance(part, Missing) else convert(part)
+            for part in (motions.measured, motions.predicted)
+        )
+    )
+
+
+def _blocks(entry: LiftMessages, topic: str, convert: Any) -> Pair[Any]:
+    parts = []
+    for source in (MEASURED, PREDICTED):
+        message = entry.blocks.get((topic, source))
+        if message is not None:
+            parts.append(convert(message, seconds(entry.single['measured_lift'].header.stamp)))
+            continue
+        missing = _prediction_missing(entry.single.get('predicted_lift'))
+        parts.append(
+            missing if source == PREDICTED and missing else Missing(f'no {topic} came for it')
+        )
+    return Pair(*parts)
+
+
+def _torques(entry: LiftMessages) -> Pair[Any]:
+    """Return the torques of both lifts by the same sagittal model."""
+    comparison = entry.single.get('lift_comparison')
+    predicted = entry.single.get('predicted_lift')
+    missing = _prediction_missing(predicted)
+    measured = (
+        Missing('no comparison with a predicted lift came')
+        if comparison is None or not comparison.torque_names
+        else curves.torques(comparison, comparison.time_from_start)
+    )
+    return Pair(
+        measured, missing or curves.torques(predicted, predicted.motion.time_from_start)
+    )
+
+
+def _comparison(entry: LiftMessages) -> Any:
+    message = entry.single.get('lift_comparison')
+    if message is None or message.report.status != 0:
+        missing = _prediction_missing(entry.single.get('predicted_lift'))
+        return missing or Missing('no comparison came')
+    return curves.comparison(message)
+
+
+def _risk(entry: LiftMessages) -> Risk | Missing:
+    message = entry.single.get('risk_assessment')
+    if message is None:
+        return Missing('no assessment came')
+    columns = (
+        message.criterion, message.source, message.value, message.limit, message.margin,
+        message.unit, message.limit_source, message.time_from_start,
+    )  # fmt: skip
+    rows = tuple(CriterionRow(*row) for row in zip(*columns, strict=True))
+    return Risk(
+        rows,
+        message.unnecessary_compression,
+        message.unnecessary_shear,
+        Zone(message.zone).name.lower(),
+        message.summary,
+        message.samples_left_out,
+    )
+
+
+def _lifting(entry: LiftMessages) -> Lifting | Missing:
+    message = entry.single.get('risk_assessment')
+    if message is None:
+        return Missing('no assessment came')
+    if math.isnan(message.lifting_index):
+        return Missing(message.lifting_index_note)
+    return Lifting(
+        tuple(float(value) for value in message.multipliers),
+        message.recommended_weight_limit,
+        message.lifting_index,
+        message.limiting_multiplier,
+        message.lifting_index_note,
+    )
+
+
+def _solves(entry: LiftMessages) -> tuple[SolveRow, ...] | Missing:
+    rows = []
+    for stage, topic, source in _STAGES:
+        message = entry.blocks.get((topic, source)) if source else entry.single.get(topic)
+        if message is None:
+            continue
+        report = message.report
+        rows.append(
+            SolveRow(
+                stage, report.status, SolveStatus(report.status).name, report.message,
+                report.iterations, report.primal_residual, report.dual_residual,
+                report.solve_time,
+            )
+        )  # fmt: skip
+    return tuple(rows) or Missing('no solve report came')
+
+
+def _quality(entry: LiftMessages) -> tuple[QualityRow, ...]:
+    measured = entry.single['measured_lift'].motion
+    rows = [
+        QualityRow(
+            'marker distance, rms', 1e3 * curves.root_mean_square(measured.marker_rms),
+            math.nan, 'mm', 'markers from the tracked skeleton',
+        ),
+        QualityRow(
+            'marker distance, largest', 1e3 * curves.largest(measured.marker_max), math.nan, 'mm',
+            'markers from the tracked skeleton',
+        ),
+    ]  # fmt: skip
+    muscles = [entry.blocks.get(('muscle_analysis', s)) for s in (MEASURED, PREDICTED)]
+    spines = [entry.blocks.get(('spine_load', s)) for s in (MEASURED, PREDICTED)]
+
+    def both(messages: list[Any], field: str, scale: float, reduce: Any) -> list[float]:
+        return [
+            math.nan if message is None else scale * reduce(getattr(message, field))
+            for message in messages
+        ]
+
+    rows += [
+        QualityRow(
+            'transfer, hands and feet', *both(muscles, 'transfer_position_error', 1e3,
+                                              curves.largest),
+            'mm', 'largest distance between the two skeletons',
+        ),
+        QualityRow(
+            'transfer, trunk and feet', *both(muscles, 'transfer_angle_error', 180.0 / math.pi,
+                                              curves.largest),
+            'deg', 'largest angle between the two skeletons',
+        ),
+        QualityRow(
+            'L5-S1 moment, from above against from below',
+            *both(spines, 'moment_difference', 1.0, curves.root_mean_square),
+            'N m', 'rms over the lift; no reference is needed for it',
+        ),
+        QualityRow(
+            'balance of the static optimisation', *both(muscles, 'primal_residual', 1.0,
+                                                        curves.largest),
+            'N m', 'largest residual over the lift',
+        ),
+        QualityRow(
+            'largest reserve torque', *both(muscles, 'reserve', 1.0, curves.largest_size),
+            'N m', 'what no muscle could give',
+        ),
+    ]  # fmt: skip
+    return tuple(rows)
+
+
+def _alarm(message: Any, start: float) -> AlarmRow:
+    return AlarmRow(
+        stamp=seconds(message.header.stamp) - start,
+        alarm=message.alarm_id,
+        previous_state=AlarmState(message.previous_state).name,
+        state=AlarmState(message.state).name,
+        value=message.value,
+        limit=message.limit,
+        margin=message.margin,
+        unit=message.unit,
+        limit_source=message.limit_source,
+        lift_id=message.lift_id,
+        historical=bool(message.historical),
+    )
+
+
+def _recording_quality(results: Results) -> tuple[QualityRow, ...] | Missing:
+    if not results.live_samples:
+        return Missing('no live sample of the spine load came')
+    share = 100.0 * results.live_unsolved / results.live_samples
+    return (
+        QualityRow(
+            'live samples not solved', share, math.nan, '%',
+            f'{results.live_unsolved} of {results.live_samples}; they raise and clear no alarm',
+        ),
+    )  # fmt: skip
