@@ -17,12 +17,10 @@ VENV = ROOT / '.venv'
 def main() -> int:
     """Run colcon; return its exit code."""
     work = ROOT / 'build' / 'colcon'
-    packages = [path.parent.name for path in (ROOT / 'ros_ws' / 'src').glob('*/package.xml')]
     command = [
         str(VENV / 'bin' / 'colcon'), '--log-base', str(work / 'log'), 'build',
         '--base-paths', str(ROOT / 'ros_ws'),
         '--build-base', str(work / 'build'), '--install-base', str(work / 'install'),
-        '--allow-overriding', *packages,
         '--cmake-args', '-G', 'Ninja', '-DCMAKE_BUILD_TYPE=', '-DCMAKE_C_FLAGS=-O1',
         '-DCMAKE_CXX_FLAGS=-O1', f'-DPython3_EXECUTABLE={VENV / "bin" / "python"}',
         '-DBUILD_TESTING=OFF',
