@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Where the shared body points and frames are in a musculoskeletal model, and its scale factors.
 
-`data/body_points.csv` says for every shared point which body carries it. A point is a joint's centre
-(`joint`), the middle of two (`middle`), or is carried by a body at the place that the subject's own
-point has relative to a joint in upright standing (`registered`), as markers are registered: so hands
-and feet have the subject's dimensions exactly. Registration is in upright standing with hanging arms and
-palms in: all coordinates zero but those of `data/upright_posture.csv`. That is the posture of the
-skeletons of `human_model` at zero coordinates, in which all shared frames are parallel to the world's.
+`data/body_points.csv` says for every shared point which body carries it. A point is a joint's
+centre (`joint`), the middle of two (`middle`), or is carried by a body at the place that the
+subject's own point has relative to a joint in upright standing (`registered`), as markers are
+registered: so hands and feet have the subject's dimensions exactly. Registration is in upright
+standing with hanging arms and palms in: all coordinates zero but those of
+`data/upright_posture.csv`. That is the posture of the skeletons of `human_model` at zero
+coordinates, in which all shared frames are parallel to the world's.
 
 `data/scale_rules.csv` says which distance between points gives a body's scale factors.
 """
@@ -22,9 +23,9 @@ from importlib.resources import files
 from types import MappingProxyType
 
 import numpy as np
-from human_model.frames import to_opensim
 from numpy.typing import NDArray
 
+from human_model.frames import to_opensim
 from muscle_analyzer.core.exceptions import ScalingError
 from muscle_analyzer.core.kinematics import BodyState, forward_kinematics
 from muscle_analyzer.core.multibody import MultibodyModel
@@ -88,7 +89,7 @@ def upright_state(model: MultibodyModel) -> BodyState:
 
 
 def generic_points(model: MultibodyModel) -> dict[str, Array]:
-    """Return where the points (3,) are in the unscaled model standing upright, OpenSim's axes, m."""
+    """Return the points (3,) of the unscaled model standing upright, OpenSim's axes, m."""
     state = upright_state(model)
     points = {}
     for row in _table('body_points'):

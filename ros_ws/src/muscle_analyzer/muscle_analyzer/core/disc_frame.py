@@ -3,23 +3,25 @@
 """The frame of the L5-S1 disc, and compression and shear in it with their sensitivity.
 
 The vertebral frames of the musculoskeletal model are not turned by the lordosis, so the disc's
-orientation has to come from elsewhere. Options, with numbers and sources in `data/disc_frames.csv`:
+orientation has to come from elsewhere. Options, with numbers and sources in
+`data/disc_frames.csv`:
 
 `bruno2015` (default)
     The disc normal leans forward by 21 degrees against the fifth lumbar vertebra's long axis.
 `chaffin`
-    The sacral end plate's angle to the horizontal from trunk flexion and knee angle. It is made for
-    static postures in the sagittal plane.
+    The sacral end plate's angle to the horizontal from trunk flexion and knee angle. It is made
+    for static postures in the sagittal plane.
 `vertebral`
     Not turned; what OpenSim's joint reaction analysis gives when asked for the child's frame.
 
-Why `bruno2015`: it belongs to a musculoskeletal model of the same family, follows the spine in every
-posture, asymmetric ones included, and in flexed postures it gives nearly the same shear as
-`chaffin`. `vertebral` gives backward shear in deep flexion, where the trunk's weight pulls L5 forwards.
-Ten degrees move some 430 N between compression and shear at 2500 N: hence the sensitivities.
+Why `bruno2015`: it belongs to a musculoskeletal model of the same family, follows the spine in
+every posture, asymmetric ones included, and in flexed postures it gives nearly the same shear as
+`chaffin`. `vertebral` gives backward shear in deep flexion, where the trunk's weight pulls L5
+forwards. Ten degrees move some 430 N between compression and shear at 2500 N: hence the
+sensitivities.
 
-Signs (force of S1 on L5; x anterior, y left, z along the disc normal towards the head): compression
-= +F_z, anterior shear = -F_x (the disc holds L5 back), lateral shear = +F_y.
+Signs (force of S1 on L5; x anterior, y left, z along the disc normal towards the head):
+compression = +F_z, anterior shear = -F_x (the disc holds L5 back), lateral shear = +F_y.
 """
 
 from __future__ import annotations

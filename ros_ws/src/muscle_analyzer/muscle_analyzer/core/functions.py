@@ -2,15 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Functions of one variable as `.osim` files define them, all held as piecewise polynomials.
 
-A constant, a line, a polynomial and a spline differ only in the number of pieces and of coefficients,
-so one representation and one compiled evaluation serve every function of a model.
+A constant, a line, a polynomial and a spline differ only in the number of pieces and of
+coefficients, so one representation and one compiled evaluation serve every function of a model.
 
 References
 ----------
 Forsythe, Malcolm and Moler (1977), Computer Methods for Mathematical Computations, chapter 4.4:
-the cubic spline whose third derivative at each end is that of the cubic through the four end points.
-OpenSim's `SimmSpline` is this spline, continued by a straight line outside its first and last knot;
-files that call it `NaturalCubicSpline` or `natCubicSpline` mean the same function (OpenSim renames them).
+the cubic spline whose third derivative at each end is that of the cubic through the four end
+points. OpenSim's `SimmSpline` is this spline, continued by a straight line outside its first and
+last knot; files that call it `NaturalCubicSpline` or `natCubicSpline` mean the same function
+(OpenSim renames them).
 """
 
 from __future__ import annotations

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Inverse dynamics of the whole tree by the recursive Newton-Euler method; compiled.
 
-The thesis' equations 2.5 to 2.9 in wrench form. All wrenches are (moment, force) about the ground's
-origin in ground axes, so the backward recursion is a plain sum over the subtree.
+The thesis' equations 2.5 to 2.9 in wrench form. All wrenches are (moment, force) about the
+ground's origin in ground axes, so the backward recursion is a plain sum over the subtree.
 """
 
 from __future__ import annotations

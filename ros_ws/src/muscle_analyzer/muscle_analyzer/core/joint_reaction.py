@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Joint reactions from muscle forces: the thesis' equation 4.11 from the hands and head down.
 
-The reaction at a joint is what the Newton-Euler equations of everything that the joint carries leave
-over after weight, external loads and muscle forces (Steele et al. 2012, Gait Posture 35:556). Wrenches
-are (moment, force) about the ground's origin in ground axes, like everywhere in this package.
+The reaction at a joint is what the Newton-Euler equations of everything that the joint carries
+leave over after weight, external loads and muscle forces (Steele et al. 2012, Gait Posture
+35:556). Wrenches are (moment, force) about the ground's origin in ground axes, like everywhere in
+this package.
 
-Muscles enter as the sum of what their paths do to each body (`muscle_paths.body_wrenches`): intermediate
-points and wrap surfaces count, not only origin and insertion.
+Muscles enter as the sum of what their paths do to each body (`muscle_paths.body_wrenches`):
+intermediate points and wrap surfaces count, not only origin and insertion.
 """
 
 from __future__ import annotations

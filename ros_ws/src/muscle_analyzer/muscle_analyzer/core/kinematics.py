@@ -3,13 +3,14 @@
 """Positions, velocities and accelerations of all bodies, and their Jacobians; compiled.
 
 Forward recursion over the tree in ground axes (the thesis' equations 2.1 to 2.4 with the joints of
-`.osim` files in place of Denavit-Hartenberg links). Jacobians are with respect to the *independent*
-coordinates: a coupled coordinate's motion counts for the coordinate that drives it.
+`.osim` files in place of Denavit-Hartenberg links). Jacobians are with respect to the
+*independent* coordinates: a coupled coordinate's motion counts for the coordinate that drives it.
 
-Spatial quantities are (angular, linear) and refer to the ground's origin: the Jacobian of a body gives
-its angular velocity and the velocity of the body-fixed point that is at the ground's origin, so that
-the velocity of a point at p is `v + w x p`, and the wrench of a force F at p is `(p x F, F)`. With
-one reference point for all bodies, wrenches of different bodies add up without being shifted.
+Spatial quantities are (angular, linear) and refer to the ground's origin: the Jacobian of a body
+gives its angular velocity and the velocity of the body-fixed point that is at the ground's origin,
+so that the velocity of a point at p is `v + w x p`, and the wrench of a force F at p is `(p x F,
+F)`. With one reference point for all bodies, wrenches of different bodies add up without being
+shifted.
 """
 
 from __future__ import annotations

@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Velocities and accelerations of recorded coordinates, over a whole recording, without delay.
 
-The same steps as OpenSim's inverse dynamics tool: the signal is continued at both ends by its point
-reflection over half its length, filtered by a third-order Butterworth low-pass forwards and backwards,
-and interpolated by a natural quintic spline, whose derivatives are taken (quintic splines: Woltring
-1986, A Fortran package for generalized, cross-validatory spline smoothing and differentiation).
+The same steps as OpenSim's inverse dynamics tool: the signal is continued at both ends by its
+point reflection over half its length, filtered by a third-order Butterworth low-pass forwards and
+backwards, and interpolated by a natural quintic spline, whose derivatives are taken (quintic
+splines: Woltring 1986, A Fortran package for generalized, cross-validatory spline smoothing and
+differentiation).
 """
 
 from __future__ import annotations

@@ -280,7 +280,7 @@ class _Motions:
                     continue
                 self.axis.append(axis.axis)
                 self.turns.append(turns)
-                moved_by = -1 if fixed or axis.coordinate is None else self._names.index(axis.coordinate)
-                self.coordinate.append(moved_by)
+                moved_by = None if fixed else axis.coordinate
+                self.coordinate.append(-1 if moved_by is None else self._names.index(moved_by))
                 self.function.append(len(self._functions))
                 self._functions.append(axis.function)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""What an `.osim` file says, as plain data: bodies, joints, couplers, muscles, wrap objects, markers.
+"""What an `.osim` file says, as plain data: bodies, joints, couplers, muscles, markers.
 
 Everything is in OpenSim's own axes (x forward, y up, z right), SI units and radians. Positions of
 path points, wrap objects and markers are already in the axes of the body that carries them.
@@ -70,8 +70,8 @@ class TransformAxis:
     Attributes
     ----------
     axis : (3,) array
-        Unit vector in the joint's frame as turned by the rotations before this one; translations are
-        along axes of the joint's frame on the parent.
+        Unit vector in the joint's frame as turned by the rotations before this one; translations
+        are along axes of the joint's frame on the parent.
     coordinate : str or None
         The coordinate that moves it; None if the function is constant.
     function : PiecewisePolynomial
@@ -135,7 +135,7 @@ class PathPoint:
 
 @dataclass(frozen=True)
 class PathWrap:
-    """The use of a wrap object by a path; `range` counts path points from 1, -1 meaning no limit."""
+    """Use of a wrap object by a path; `range` counts path points from 1, -1 is no limit."""
 
     wrap_object: str
     method: str
@@ -155,8 +155,8 @@ class WrapObject:
     quadrant : str
         'all', or the half of the surface that may be used: 'x', '-x', 'y', '-y', 'z', '-z'.
     dimensions : tuple of float
-        In m: cylinder radius, length; sphere radius; ellipsoid three half axes; torus inner and outer
-        radius.
+        In m: cylinder radius, length; sphere radius; ellipsoid three half axes; torus inner and
+        outer radius.
     """
 
     name: str

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads a musculoskeletal model from an OpenSim 4.x `.osim` file.
 
-What the file says is kept; what would change a result and is not modelled raises an error that names
-the element; what is deliberately not part of the model (contact surfaces, actuators, controllers) is
-listed in `OsimModel.left_out`.
+What the file says is kept; what would change a result and is not modelled raises an error that
+names the element; what is deliberately not part of the model (contact surfaces, actuators,
+controllers) is listed in `OsimModel.left_out`.
 """
 
 from __future__ import annotations
@@ -127,9 +127,8 @@ def _read_body(xml: OsimXml, element: Element) -> Body:
 def _read_coordinate(xml: OsimXml, element: Element) -> Coordinate:
     if xml.flag(element, 'prescribed', False):
         raise UnsupportedElementError(f'{xml.where(element)} is prescribed')
-    low, high = (
-        xml.numbers(element, 'range', 2) if element.find('range') is not None else (-np.inf, np.inf)
-    )
+    has_range = element.find('range') is not None
+    low, high = xml.numbers(element, 'range', 2) if has_range else (-np.inf, np.inf)
     if low > high:
         raise OsimFormatError(f'{xml.where(element)} <range>: {low} > {high}')
     return Coordinate(
@@ -202,9 +201,11 @@ def _read_axis(xml: OsimXml, joint: Element, element: Element, names: set[str]) 
         )
     function = xml.function(element)
     if moved_by and moved_by[0] not in names:
-        raise OsimFormatError(f'{xml.where(joint)}: coordinate {moved_by[0]!r} is not of this joint')
+        raise OsimFormatError(f'{xml.where(joint)} has no coordinate {moved_by[0]!r}')
     if not moved_by and not function.is_constant():
-        raise OsimFormatError(f'{xml.where(joint)} {element.get("name")}: function of no coordinate')
+        raise OsimFormatError(
+            f'{xml.where(joint)} {element.get("name")}: function of no coordinate'
+        )
     return TransformAxis(axis / length, moved_by[0] if moved_by else None, function)
 
 
@@ -226,7 +227,8 @@ def _read_couplers(
         if holder is None:
             raise OsimFormatError(f'{xml.where(element)} has no <coupled_coordinates_function>')
         # OpenSim's scale_factor multiplies the function.
-        scale = xml.number(element, 'scale_factor') if element.find('scale_factor') is not None else 1.0
+        has_scale = element.find('scale_factor') is not None
+        scale = xml.number(element, 'scale_factor') if has_scale else 1.0
         couplers.append(
             Coupler(
                 name=xml.name(element),

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Typed access to the elements of an `.osim` file, with errors that name file, element and value."""
+"""Typed access to the elements of an `.osim` file; errors name file, element and value."""
 
 from __future__ import annotations
 
@@ -53,7 +53,8 @@ class OsimXml:
     def where(self, element: Element) -> str:
         """Return 'file: <tag name="...">' for messages."""
         name = element.get('name')
-        return f'{self.path}: <{element.tag} name="{name}">' if name else f'{self.path}: <{element.tag}>'
+        label = f' name="{name}"' if name else ''
+        return f'{self.path}: <{element.tag}{label}>'
 
     def name(self, element: Element) -> str:
         """Return an element's name attribute, which must be there."""
@@ -168,4 +169,5 @@ def body_fixed_xyz(angles: Array) -> Array:
     about_x = np.array([[1.0, 0.0, 0.0], [0.0, cx, -sx], [0.0, sx, cx]])
     about_y = np.array([[cy, 0.0, sy], [0.0, 1.0, 0.0], [-sy, 0.0, cy]])
     about_z = np.array([[cz, -sz, 0.0], [sz, cz, 0.0], [0.0, 0.0, 1.0]])
-    return about_x @ about_y @ about_z
+    product: Array = about_x @ about_y @ about_z
+    return product

@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fits a tree's independent coordinates to points and orientations of bodies; compiled.
 
-Weighted least squares by a damped Gauss-Newton method (Levenberg 1944, Marquardt 1963) with bounds: a
-coordinate at its bound is left out of a step that would push it outwards.
+Weighted least squares by a damped Gauss-Newton method (Levenberg 1944, Marquardt 1963) with
+bounds: a coordinate at its bound is left out of a step that would push it outwards.
 
-Where points say little about a coordinate (a straight elbow leaves the split of a turn between upper
-arm and forearm open), a weak pull towards a reference value decides, instead of noise.
+Where points say little about a coordinate (a straight elbow leaves the split of a turn between
+upper arm and forearm open), a weak pull towards a reference value decides, instead of noise.
 """
 
 from __future__ import annotations
@@ -188,7 +188,7 @@ def _damped_step(normal: Array, gradient: Array, free: NDArray[np.bool_], dampin
 @njit(cache=True)
 def _cost(targets: Targets, residual: Array, q: Array) -> float:
     pull = targets.reference_weight * (q - targets.reference)
-    return 0.5 * (np.dot(residual, residual) + np.dot(pull, pull))
+    return float(0.5 * (np.dot(residual, residual) + np.dot(pull, pull)))
 
 
 @njit(cache=True)
@@ -239,8 +239,9 @@ def fit_pose(
         scale = np.trace(normal) / n_q
         free = fitted.copy()
         for k in range(n_q):
-            if (q[k] <= lower[k] and gradient[k] > 0.0) or (q[k] >= upper[k] and gradient[k] < 0.0):
-                free[k] = False
+            below = q[k] <= lower[k] and gradient[k] > 0.0
+            above = q[k] >= upper[k] and gradient[k] < 0.0
+            free[k] = fitted[k] and not (below or above)
         while True:
             step = _damped_step(normal, gradient, free, relative_damping * scale)
             trial = np.minimum(np.maximum(q + step, lower), upper)
@@ -271,8 +272,8 @@ def map_rates(
 ) -> tuple[Array, Array]:
     """Return rates and accelerations (n_q,) of the coordinates from those of points and frames.
 
-    The weighted least-squares solutions of J q' = v and J q'' = a - J' q' with the fit's weights: no
-    filter, hence no delay beyond that of v and a.
+    The weighted least-squares solutions of J q' = v and J q'' = a - J' q' with the fit's weights:
+    no filter, hence no delay beyond that of v and a.
 
     Parameters
     ----------

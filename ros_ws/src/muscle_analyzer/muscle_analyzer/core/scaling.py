@@ -2,13 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Scales a model: one factor per body and axis, as OpenSim's scale tool does.
 
-Everything fixed to a body is stretched along the body's axes: joint frames, path points, wrap objects,
-markers, mass centres. Masses keep their distribution and add up to the subject's. Optimal fibre and
-tendon slack lengths are multiplied by the ratio of the muscle's path lengths after and before, in the
-default posture. Maximum isometric forces are kept unless asked for.
+Everything fixed to a body is stretched along the body's axes: joint frames, path points, wrap
+objects, markers, mass centres. Masses keep their distribution and add up to the subject's. Optimal
+fibre and tendon slack lengths are multiplied by the ratio of the muscle's path lengths after and
+before, in the default posture. Maximum isometric forces are kept unless asked for.
 
-One thing differs from OpenSim: inertia tensors are those of the stretched mass distribution itself,
-where OpenSim takes a cylinder if the factors of a body's axes differ. With equal factors both agree.
+One thing differs from OpenSim: inertia tensors are those of the stretched mass distribution
+itself, where OpenSim takes a cylinder if the factors of a body's axes differ. With equal factors
+both agree.
 """
 
 from __future__ import annotations
@@ -113,7 +114,7 @@ def _checked_factors(model: OsimModel, factors: Mapping[str, Array]) -> dict[str
             raise ScalingError(f'{model.source}: no scale factor for body {body.name!r}')
         factor = np.asarray(factors[body.name], dtype=np.float64)
         if factor.shape != (3,) or not np.all(np.isfinite(factor)) or np.any(factor <= 0.0):
-            raise ScalingError(f'body {body.name!r}: scale factors {factor} are not three positive')
+            raise ScalingError(f'body {body.name!r}: scale factors {factor} are not positive')
         checked[body.name] = factor
     return checked
 
@@ -163,13 +164,13 @@ def _scale_wrap(wrap: WrapObject, factor: Array) -> WrapObject:
     along = np.linalg.norm(factor[:, None] * wrap.frame.rotation, axis=0)
     match wrap.kind:
         case 'cylinder':
-            by = (0.5 * (along[0] + along[1]), along[2])
+            by = np.array([0.5 * (along[0] + along[1]), along[2]])
         case 'ellipsoid':
-            by = tuple(along)
+            by = along
         case 'sphere':
-            by = (along.mean(),)
+            by = along.mean(keepdims=True)
         case _:
-            by = (0.5 * (along[0] + along[1]),) * 2
+            by = np.full(2, 0.5 * (along[0] + along[1]))
     dimensions = tuple(float(d * b) for d, b in zip(wrap.dimensions, by, strict=True))
     return replace(wrap, frame=_scale_frame(wrap.frame, factor), dimensions=dimensions)
 

@@ -23,7 +23,8 @@ from muscle_analyzer.core.scaling import StrengthScaling, scale_model
 
 Array = NDArray[np.float64]
 
-# The lifting full-body model (Beaucage-Gauvreau et al. 2019) as adapted in the pose2sim wheel (BSD-3).
+# The lifting full-body model (Beaucage-Gauvreau et al. 2019) as adapted in the pose2sim wheel
+# (BSD-3).
 _PACKAGE, _FILE = 'Pose2Sim', 'OpenSim_Setup/Model_Pose2Sim_muscles_flex.osim'
 
 
@@ -84,8 +85,8 @@ def subject_model(
     ----------
     generic : OsimModel
     points : mapping of str to (3,) array
-        The subject's shared points in upright standing with hanging arms (`human_model` skeleton at
-        zero coordinates), REP-103 axes, m.
+        The subject's shared points in upright standing with hanging arms (`human_model` skeleton
+        at zero coordinates), REP-103 axes, m.
     mass : float
         kg.
     strength : StrengthScaling

@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Takes a motion over from a skeleton of `human_model` to the musculoskeletal model.
 
-The two have different joints, so angles are not copied (the thesis does, section 4.1.2): the second
-model is fitted, frame by frame, to the first one's joint centres, hands, feet and trunk. Hands, feet
-and the trunk's orientation weigh most, because the box's and the ground's lever arms hang on them.
+The two have different joints, so angles are not copied (the thesis does, section 4.1.2): the
+second model is fitted, frame by frame, to the first one's joint centres, hands, feet and trunk.
+Hands, feet and the trunk's orientation weigh most, because the box's and the ground's lever arms
+hang on them.
 
-Velocities and accelerations come from those of the skeleton's points by least squares (`map_rates`):
-the same way live and for a recorded lift, and without a filter, so without further delay.
+Velocities and accelerations come from those of the skeleton's points by least squares
+(`map_rates`): the same way live and for a recorded lift, and without a filter, so without further
+delay.
 """
 
 from __future__ import annotations
@@ -15,14 +17,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
 from human_model.compiled import body_motion
 from human_model.frames import ROS_FROM_OPENSIM, matrix_from_quaternion, rotation_to_opensim
 from human_model.motion import FRAMES, POINTS, BodyMotion
 from human_model.skeleton import Skeleton
 from human_model.tree import TreeArrays
-from numba import njit
-from numpy.typing import NDArray
-
 from muscle_analyzer.core.body_points import upright_coordinates
 from muscle_analyzer.core.exceptions import TransferError
 from muscle_analyzer.core.kinematics import forward_kinematics
@@ -33,8 +35,9 @@ Array = NDArray[np.float64]
 
 # The skeletons have no neck: the head stays as it is on the thorax.
 HELD_COORDINATES = ('neck_flexion', 'neck_bending', 'neck_rotation')
-# The limbs' coordinates have the same names and meanings in both models: a weak pull to the skeleton's
-# values decides what the points leave open. So many radians weigh as much as one sigma of a point.
+# The limbs' coordinates have the same names and meanings in both models: a weak pull to the
+# skeleton's values decides what the points leave open. So many radians weigh as much as one sigma
+# of a point.
 REFERENCE_SIGMA = 0.2
 UNREFERENCED = ('pelvis_', 'L5_S1_', 'neck_')
 TOLERANCE = 1e-5
@@ -195,8 +198,9 @@ class MotionTransfer:
         worst = int(np.argmax(off))
         if off[worst] > SAME_POINT:
             raise TransferError(
-                f'motion at {motion.time[sample]:.3f} s: point {self.subject.points.names[worst]!r} '
-                f'is {off[worst]:.4f} m away from the skeleton of the subject'
+                f'motion at {motion.time[sample]:.3f} s: '
+                f'point {self.subject.points.names[worst]!r} is {off[worst]:.4f} m '
+                'away from the skeleton of the subject'
             )
 
     def _upright(self, targets: Targets) -> Array:
