@@ -1,0 +1,185 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Force of the box on the hands, from the plates before lift-off and from the box after it.
+
+While the box still stands on something, part of its weight does too, and the plates under the
+feet feel only what the hands take: the vertical hand force is what the body's weight and inertia need
+less what the ground gives, less the bias this difference had while the hands were away from the
+box (the plates and the segment masses never agree exactly). Once the box has risen, the
+force is -m (g + a). The two are blended over the first centimetres of the rise, and the first
+fades in with the hands' approach, so that the force has no step as long as its inputs have none.
+Noise of the first estimate: that of the ground force and of the body's acceleration, a few tens of
+newtons; of the second: the box mass times the noise of the filtered acceleration, a few newtons.
+
+Each hand takes the share that balances the box's weight at its centre between the hands, as on a
+beam; inner forces, with which the hands squeeze the box, cannot be seen and are taken as zero.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from motion_tracker.core.errors import HandForceError
+from motion_tracker.core.force_plates import STANDARD_GRAVITY
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class HandForceSettings:
+    """Distances and times of the blends.
+
+    Attributes
+    ----------
+    free_rise : float
+        Rise from which on the box is carried by the hands alone [m].
+    reach : float
+        Distance of the hands from the box, over half its diagonal, at which they can hold it [m].
+    fade : float
+        Further distance over which the estimate from the plates fades out [m].
+    largest_share : float
+        The estimate from the plates is limited to this multiple of the box's weight.
+    bias_time : float
+        Time constant of the bias of the estimate from the plates [s].
+    release_time : float
+        Time over which the box is handed back to the estimate from the plates after a lift [s].
+    """
+
+    free_rise: float = 0.02
+    reach: float = 0.05
+    fade: float = 0.10
+    largest_share: float = 1.5
+    bias_time: float = 1.0
+    release_time: float = 0.3
+
+    def __post_init__(self) -> None:
+        """Check that every number is positive."""
+        for name, value in vars(self).items():
+            if not (np.isfinite(value) and value > 0):
+                raise HandForceError(f'hand_force.{name}: must be positive, got {value}')
+
+
+def smooth_step(x: float) -> float:
+    """0 below 0, 1 above 1, cubic with level ends in between."""
+    s = min(max(x, 0.0), 1.0)
+    return s * s * (3.0 - 2.0 * s)
+
+
+def split(hands: Array, box: Array) -> float:
+    """Share of the right hand: 1 where the box is at the right hand, 0 at the left, half unknown.
+
+    Parameters
+    ----------
+    hands
+        Grip centres (2, 3) right, left [m].
+    box
+        Centre of the box (3,) [m].
+    """
+    span = hands[0] - hands[1]
+    span[2] = 0.0
+    length = float(span @ span)
+    if length < 1e-4:
+        return 0.5
+    return float(np.clip((box - hands[1]) @ span / length, 0.0, 1.0))
+
+
+class HandForceEstimator:
+    """Estimator with the memory of one recording: bias, and the height the box rests at.
+
+    Parameters
+    ----------
+    box_mass
+        kg; 0: nothing is lifted and every force is zero.
+    box_size
+        Depth, width, height of the box [m].
+    settings
+        Blends.
+
+    Raises
+    ------
+    HandForceError
+        If mass or size are negative or not finite.
+    """
+
+    def __init__(self, box_mass: float, box_size: npt.ArrayLike,
+                 settings: HandForceSettings | None = None) -> None:
+        size = np.asarray(box_size, dtype=np.float64)
+        if not (np.isfinite(box_mass) and box_mass >= 0):
+            raise HandForceError(f'box_mass: {box_mass} kg is no mass')
+        if size.shape != (3,) or not np.all(np.isfinite(size)) or np.any(size < 0):
+            raise HandForceError(f'box_size: three lengths are needed, got {size}')
+        self.settings = settings or HandForceSettings()
+        self.box_mass = box_mass
+        self._reach = 0.5 * float(np.linalg.norm(size)) + self.settings.reach
+        #: Ground force missing to the body's need while the hands are away from the box [N].
+        self.bias: float | None = None
+        #: Height of the box at rest [m], from which its rise is counted.
+        self.support: float | None = None
+
+    def gate(self, hands: Array, box: Array) -> float:
+        """1 while both hands are at the box, 0 while one is well away from it."""
+        distance = float(np.max(np.linalg.norm(hands - box, axis=1)))
+        return 1.0 - smooth_step((distance - self._reach) / self.settings.fade)
+
+    def observe(self, missing: float | None, hands: Array, box: Array, speed: float,
+                lifting: bool, step: float, rest_speed: float) -> None:
+        """Learn the bias and the rest height from one sample.
+
+        Parameters
+        ----------
+        missing
+            Vertical force the body needs less what the plates give [N]; None without plates.
+        hands, box
+            Grip centres (2, 3) and box centre (3,) [m].
+        speed
+            Vertical speed of the box [m/s].
+        lifting
+            Whether a lift is under way.
+        step
+            Time since the sample before [s].
+        rest_speed
+            Speed below which the box is at rest [m/s].
+        """
+        if missing is not None and self.gate(hands, box) == 0.0:
+            weight = min(1.0, step / self.settings.bias_time)
+            self.bias = missing if self.bias is None else \
+                self.bias + weight * (missing - self.bias)
+        if not lifting and abs(speed) < rest_speed:
+            if self.support is None or abs(box[2] - self.support) > self.settings.free_rise:
+                self.support = float(box[2])
+            else:
+                weight = min(1.0, step / self.settings.bias_time)
+                self.support += weight * (float(box[2]) - self.support)
+
+    def estimate(self, missing: float | None, hands: Array, box: Array, acceleration: Array,
+                 support: float | None, since_end: float | None) -> Array:
+        """Force of the box on the [right, left] hand (2, 3) [N].
+
+        Parameters
+        ----------
+        missing
+            As in `observe`.
+        hands, box, acceleration
+            Grip centres (2, 3) [m], box centre (3,) [m] and its acceleration [m/s^2].
+        support
+            Height the box was lifted from [m]; None: not known, nothing is carried.
+        since_end
+            Time since the end of the last lift was known [s]; None while one is under way or
+            none was.
+        """
+        if self.box_mass == 0.0 or not np.all(np.isfinite(box)):
+            return np.zeros((2, 3))
+        carried = 0.0 if support is None else smooth_step(
+            (float(box[2]) - support) / self.settings.free_rise)
+        if since_end is not None:
+            carried *= 1.0 - smooth_step(since_end / self.settings.release_time)
+        gravity = np.array([0.0, 0.0, STANDARD_GRAVITY])
+        free = -self.box_mass * (acceleration + gravity)
+        taken = 0.0
+        if missing is not None:
+            most = self.settings.largest_share * self.box_mass * STANDARD_GRAVITY
+            taken = self.gate(hands, box) * float(np.clip((self.bias or 0.0) - missing, 0.0, most))
+        total = carried * free + (1.0 - carried) * np.array([0.0, 0.0, -taken])
+        right = split(hands.copy(), box)
+        return np.stack([right * total, (1.0 - right) * total])

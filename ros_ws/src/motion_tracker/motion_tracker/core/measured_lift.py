@@ -1,0 +1,191 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""A whole lift from the recorded frames: gaps bridged, filters of zero phase."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import numpy.typing as npt
+from human_model.motion import POINTS, Lift
+from human_model.report import SolveReport, SolveStatus
+from human_model.skeleton import Skeleton
+
+from motion_tracker.core.dynamics import needed_force
+from motion_tracker.core.filters import derivatives, zero_phase
+from motion_tracker.core.force_plates import SIDES, PlateGeometry, ground_reaction
+from motion_tracker.core.hand_force import HandForceEstimator
+from motion_tracker.core.streams import SampledStream
+from motion_tracker.core.tracked import FrameRecord, MeasuredLift, TrackerSettings
+
+Array = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+_HANDS = (POINTS.index('hand_r'), POINTS.index('hand_l'))
+
+
+class LiftBuilder:
+    """Makes measured lifts of one recording.
+
+    Parameters
+    ----------
+    skeleton
+        Of the person.
+    settings
+        Of the tracker.
+    plates
+        Geometry by side.
+    wrenches
+        Streams of force and moment by side.
+    box
+        Stream of the box's centre.
+    """
+
+    def __init__(self, skeleton: Skeleton, settings: TrackerSettings,
+                 plates: Mapping[str, PlateGeometry], wrenches: Mapping[str, SampledStream],
+                 box: SampledStream) -> None:
+        self._skeleton = skeleton
+        self._settings = settings
+        self._plates = plates
+        self._wrenches = wrenches
+        self._box = box
+
+    def build(self, lift_id: str, start: float, end: float, records: Sequence[FrameRecord],
+              rate: float, estimator: HandForceEstimator, support: float | None) -> MeasuredLift:
+        """Filter and combine everything between start and end [s].
+
+        Parameters
+        ----------
+        lift_id, start, end
+            Of the lift [s].
+        records
+            Marker frames from before the start to after the end.
+        rate
+            Of the marker frames [Hz].
+        estimator
+            Of the hand force, with the bias learnt before the lift.
+        support
+            Height the box was lifted from [m]; None without a box.
+        """
+        stamps = np.array([record.stamp for record in records])
+        count = int(np.floor((stamps[-1] - stamps[0]) * rate + 1e-6)) + 1
+        grid = stamps[0] + np.arange(count) / rate
+        good = np.array([record.solution.ok for record in records])
+        status, bridged = self._status(grid, stamps, good, records)
+        usable = good if good.sum() >= 2 else np.array(
+            [record.solution.used > 0 for record in records])
+        rows = np.array([record.solution.q for record in records])[usable]
+        even = np.stack([np.interp(grid, stamps[usable], column) for column in rows.T], axis=1)
+        q = zero_phase(even, rate, self._settings.motion_cutoff)
+        qd, qdd = derivatives(q, rate)
+        inside = (grid >= start - 1e-9) & (grid <= end + 1e-9)
+        times = grid[inside]
+        q, qd, qdd, status = q[inside], qd[inside], qdd[inside], status[inside]
+        forces, on_plates = self._ground(times)
+        if not on_plates:
+            status[status == 0] = SolveStatus.TRACKER_NO_GROUND_FORCE
+        forces |= self._hands(grid, inside, rate, q, qd, qdd, estimator, support,
+                              forces['ground_force'] if on_plates else None)
+        motion = self._skeleton.body_motion(times, q, qd, qdd, **forces)
+        rms, largest = self._residuals(times, records, stamps, rate)
+        report = self._report(records, inside, status, bridged, on_plates)
+        lift = Lift(lift_id, 'measured', start, end, estimator.box_mass, motion, report)
+        return MeasuredLift(lift, status, rms, largest)
+
+    def _status(self, grid: Array, stamps: Array, good: npt.NDArray[np.bool_],
+                records: Sequence[FrameRecord]) -> tuple[IntArray, int]:
+        """Status of every grid sample, and how many bad ones were bridged."""
+        nearest = np.clip(np.searchsorted(stamps, grid - 0.5 * (grid[1] - grid[0])), 0,
+                          len(stamps) - 1)
+        lost = np.abs(stamps[nearest] - grid) > 0.5 * (grid[1] - grid[0])
+        codes = np.array([int(record.solution.status) for record in records], dtype=np.int64)
+        status = np.where(lost, int(SolveStatus.TRACKER_MARKERS_MISSING), codes[nearest])
+        bad = status != 0
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], bad, [False]]).astype(int)))
+        bridged = 0
+        for first, last in zip(edges[::2], edges[1::2], strict=True):
+            short = (last - first) * (grid[1] - grid[0]) <= self._settings.longest_gap + 1e-9
+            if short and first > 0 and last < len(grid):
+                status[first:last] = 0
+                bridged += int(last - first)
+        return status, bridged
+
+    def _ground(self, times: Array) -> tuple[dict[str, Array], bool]:
+        n = len(times)
+        forces = {'ground_force': np.zeros((n, 2, 3)), 'cop': np.full((n, 2, 3), np.nan),
+                  'free_moment': np.zeros((n, 2, 3))}
+        complete = True
+        for side, name in enumerate(SIDES):
+            rows = self._wrenches[name].zero_phase_at(times, self._settings.plate_cutoff,
+                                                      self._settings.margin)
+            if rows is None:
+                complete = False
+                continue
+            foot = ground_reaction(rows[:, :3], rows[:, 3:], self._plates[name],
+                                   self._settings.force_threshold)
+            forces['ground_force'][:, side] = foot.force
+            forces['cop'][:, side] = foot.cop
+            forces['free_moment'][:, side] = foot.free_moment
+        return forces, complete
+
+    def _hands(self, grid: Array, inside: npt.NDArray[np.bool_], rate: float, q: Array, qd: Array,
+               qdd: Array, estimator: HandForceEstimator, support: float | None,
+               ground: Array | None) -> dict[str, Array]:
+        """Box position (n, 3) and hand forces (n, 2, 3)."""
+        n = int(inside.sum())
+        none = {'hand_force': np.zeros((n, 2, 3)), 'box_position': np.full((n, 3), np.nan)}
+        if estimator.box_mass == 0.0:
+            return none
+        raw = [self._box.raw_at(float(time)) for time in grid]
+        known = np.array([row is not None for row in raw])
+        if known.sum() < 2 or not known[inside].mean() > 0.5:
+            return none
+        rows = np.array([row for row in raw if row is not None])
+        even = np.stack([np.interp(grid, grid[known], column) for column in rows.T], axis=1)
+        box = zero_phase(even, rate, self._settings.motion_cutoff)
+        acceleration = derivatives(box, rate)[1][inside]
+        box = box[inside]
+        hands = self._skeleton.point_array(q)[:, _HANDS, :]
+        force = np.zeros((n, 2, 3))
+        for i in range(n):
+            missing = None
+            if ground is not None:
+                need = needed_force(self._skeleton, q[i], qd[i], qdd[i])
+                missing = float(need[2] - ground[i, :, 2].sum())
+            force[i] = estimator.estimate(missing, hands[i], box[i], acceleration[i], support,
+                                          None)
+        return {'hand_force': force, 'box_position': box}
+
+    def _residuals(self, times: Array, records: Sequence[FrameRecord], stamps: Array,
+                   rate: float) -> tuple[Array, Array]:
+        rms, largest = np.full(len(times), np.nan), np.full(len(times), np.nan)
+        at = np.searchsorted(times, stamps - 0.5 / rate)
+        for index, record in zip(at, records, strict=True):
+            if index < len(times) and abs(times[index] - record.stamp) <= 0.5 / rate:
+                rms[index] = record.solution.rms
+                largest[index] = record.solution.maximum
+        return rms, largest
+
+    def _report(self, records: Sequence[FrameRecord], inside: npt.NDArray[np.bool_],
+                status: IntArray, bridged: int, on_plates: bool) -> SolveReport:
+        solutions = [record.solution for record in records]
+        words = [f'{int(inside.sum())} samples, markers '
+                 f'{1000 * np.sqrt(np.nanmean([s.rms**2 for s in solutions])):.1f} mm rms']
+        if bridged:
+            words.append(f'{bridged} bad frames bridged by interpolation')
+        bad = status[status != 0]
+        worst = SolveStatus.OK
+        if bad.size:
+            codes, counts = np.unique(bad, return_counts=True)
+            worst = SolveStatus(int(codes[np.argmax(counts)]))
+            words.append(f'{bad.size} samples are not good data')
+            reasons = [s.message for s in solutions if s.message]
+            if reasons:
+                words.append(reasons[0])
+        if not on_plates:
+            words.append('no complete ground reaction')
+        return SolveReport(
+            status=worst, message='; '.join(words),
+            iterations=sum(s.iterations for s in solutions),
+            objective=float(np.nanmean([s.objective for s in solutions])),
+            primal_residual=float(np.nanmax([s.maximum for s in solutions])),
+            dual_residual=float(np.nanmax([s.stationarity for s in solutions])))
