@@ -22,6 +22,7 @@ from lifting_interfaces.msg import (
 )
 from lifting_interfaces.srv import AcknowledgeAlarm, ResetAlarm, ShelveAlarm
 from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
+from rclpy.subscription import Subscription
 
 from injury_monitor import conversions
 from injury_monitor.core import alarm_event
@@ -61,12 +62,14 @@ class InjuryMonitorNode(PipelineNode):
         self._collector = LiftCollector(self.values['result_wait'])
         self._subject: Subject | None = None
         self._task: Task | None = None
-        self._filter_delay = math.nan
+        self.filter_delay = math.nan
         self._alarms = self.advertise(AlarmEvent, 'alarms', qos.RESULTS)
         self._assessments = self.advertise(RiskAssessment, 'risk_assessment', qos.RESULTS)
         self.subscribe(Subject, 'subject', self._on_subject, qos.LATCHED)
         self.subscribe(Task, 'task', self._on_task, qos.LATCHED)
-        self.subscribe(BodyMotion, 'body_motion', self._on_body_motion, qos.FRAMES)
+        # Only for its filter delay, which does not change: dropped after the first message.
+        self._delay_input: Subscription | None = self.create_subscription(
+            BodyMotion, 'body_motion', self._on_body_motion, qos.FRAMES)
         self.subscribe(SpineLoad, 'spine_load', self._on_spine_load, qos.FRAMES)
         self.subscribe(JointTorques, 'joint_torques', self._on_joint_torques, qos.FRAMES)
         self.subscribe(MuscleAnalysis, 'muscle_analysis', self._on_muscle_analysis, qos.FRAMES)
@@ -76,13 +79,14 @@ class InjuryMonitorNode(PipelineNode):
             self.create_service(AcknowledgeAlarm, '~/acknowledge_alarm', self._acknowledge),
             self.create_service(ResetAlarm, '~/reset_alarm', self._reset),
             self.create_service(ShelveAlarm, '~/shelve_alarm', self._shelve)]
-        self._deadline = self.create_timer(1.0, self._assess_ready)
+        self._housekeeping = self.create_timer(1.0, self._keep_house)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Drop the services and the timer with the rest."""
         for service in self._operator_services:
             self.destroy_service(service)
-        self.destroy_timer(self._deadline)
+        self.destroy_timer(self._housekeeping)
+        self._drop_delay_input()
         return super().on_cleanup(state)
 
     def _on_subject(self, message: Subject) -> None:
@@ -103,7 +107,17 @@ class InjuryMonitorNode(PipelineNode):
             f'({limits.loads_per_day:g} loads a day)')
 
     def _on_body_motion(self, message: BodyMotion) -> None:
-        self._filter_delay = message.filter_delay
+        self.filter_delay = message.filter_delay
+
+    def _drop_delay_input(self) -> None:
+        if self._delay_input is not None:
+            self.destroy_subscription(self._delay_input)
+            self._delay_input = None
+
+    def _keep_house(self) -> None:
+        if not math.isnan(self.filter_delay):
+            self._drop_delay_input()
+        self._assess_ready()
 
     def _on_spine_load(self, message: SpineLoad) -> None:
         source = conversions.lift_source(message)
@@ -189,9 +203,11 @@ class InjuryMonitorNode(PipelineNode):
             self.report_error(f'{parts.lift_id} not assessed: no measured spine load came within '
                               f'{self._collector.wait:g} s')
             return
-        if parts.no_prediction:
-            self.get_logger().warning(f'{parts.lift_id}: {parts.no_prediction}')
-        result = self.monitor.assess(measured, parts.loads(PREDICTED), parts.ends)
+        predicted = parts.loads(PREDICTED)
+        reason = parts.no_prediction or f'none came within {self._collector.wait:g} s'
+        if predicted is None:
+            self.get_logger().warning(f'{parts.lift_id}: no predicted lift: {reason}')
+        result = self.monitor.assess(measured, predicted, parts.ends, reason)
         self._assessments.publish(conversions.assessment_to_msg(result, measured.start))
 
     def _announce(self, events: list[alarm_event.AlarmEvent]) -> None:
@@ -201,7 +217,7 @@ class InjuryMonitorNode(PipelineNode):
             self._journal.append(events)
         for event in events:
             self.get_logger().warning(event.message())
-            self._alarms.publish(conversions.alarm_to_msg(event, self._filter_delay))
+            self._alarms.publish(conversions.alarm_to_msg(event, self.filter_delay))
 
     def _acknowledge(self, request: AcknowledgeAlarm.Request,
                      response: AcknowledgeAlarm.Response) -> AcknowledgeAlarm.Response:

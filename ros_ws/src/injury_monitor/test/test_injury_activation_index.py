@@ -65,6 +65,16 @@ def test_unsolved_samples_are_left_out():
     assert nothing.worst()[0] == '' and np.isnan(nothing.index[0])
 
 
+def test_one_unsolved_sample_is_bridged_and_a_longer_hole_is_not():
+    time = np.arange(0.0, 1.2, 0.1)
+    activation = np.full((len(time), 1), 0.3)
+    for hole, expected in ((slice(5, 6), 0.3), (slice(5, 8), np.nan)):
+        solved = np.ones(len(time), bool)
+        solved[hole] = False
+        result = activation_index(time, ('m',), activation, solved, window=0.7)
+        np.testing.assert_allclose(result.index, [expected])
+
+
 def test_bad_input_is_refused():
     with pytest.raises(InvalidInputError, match='window'):
         SlidingMean(0.0)

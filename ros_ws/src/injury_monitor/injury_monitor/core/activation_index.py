@@ -116,8 +116,7 @@ class ActivationIndex:
 
 
 def activation_index(time: FloatArray, muscles: Sequence[str], activation: FloatArray,
-                     solved: BoolArray, window: float = DEFAULT_WINDOW,
-                     max_gap: float = DEFAULT_MAX_GAP) -> ActivationIndex:
+                     solved: BoolArray, window: float = DEFAULT_WINDOW) -> ActivationIndex:
     """Find the activation index of every muscle over a lift.
 
     Parameters
@@ -129,8 +128,9 @@ def activation_index(time: FloatArray, muscles: Sequence[str], activation: Float
         [0..1]; rows that are not solved may hold anything.
     solved : array of bool (n,)
         Samples whose solve report is good; the others are left out.
-    window, max_gap : float
-        See :class:`SlidingMean`; a lift shorter than the window is averaged as a whole.
+    window : float
+        See :class:`SlidingMean`; a lift shorter than the window is averaged as a whole. One
+        sample that did not solve is bridged, a longer hole starts the window anew.
     """
     values = array('activation', activation, (len(time), len(muscles)))
     stamps = np.asarray(time, dtype=np.float64)[solved]
@@ -141,7 +141,7 @@ def activation_index(time: FloatArray, muscles: Sequence[str], activation: Float
     length = float(stamps[-1] - stamps[0]) if len(stamps) > 1 else 0.0
     if length <= 0.0:
         return ActivationIndex(tuple(muscles), best, when, 0.0)
-    mean = SlidingMean(min(window, length), max_gap)
+    mean = SlidingMean(min(window, length), 2.5 * float(np.median(np.diff(time))))
     for stamp, row in zip(stamps, values[solved], strict=True):
         current = mean.add(float(stamp), row)
         if current is not None:

@@ -110,7 +110,7 @@ class RiskAssessment:
 
 def assess_lift(work: Work, limits: LimitSet, measured: LiftLoads,
                 predicted: LiftLoads | None = None, ends: LiftEnds | None = None,
-                window: float = DEFAULT_WINDOW) -> RiskAssessment:
+                window: float = DEFAULT_WINDOW, no_prediction: str = '') -> RiskAssessment:
     """Assess one lift.
 
     Parameters
@@ -123,6 +123,8 @@ def assess_lift(work: Work, limits: LimitSet, measured: LiftLoads,
         Places of hands and ankles at origin and destination for the lifting equation.
     window : float
         Of the activation index [s].
+    no_prediction : str
+        Why there is no predicted lift, for the notes.
 
     Raises
     ------
@@ -137,7 +139,8 @@ def assess_lift(work: Work, limits: LimitSet, measured: LiftLoads,
     activations: dict[str, ActivationIndex] = {}
     notes: list[str] = []
     if predicted is None:
-        notes.append('no predicted lift: the unnecessary part of the load is not known')
+        notes.append('no predicted lift, the unnecessary part of the load is not known: '
+                     + (no_prediction or 'no reason was given'))
     lifts = {'measured': measured} if predicted is None else {
         'measured': measured, 'predicted': predicted}
     for source, lift in lifts.items():

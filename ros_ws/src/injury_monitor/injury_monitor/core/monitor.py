@@ -233,10 +233,11 @@ class InjuryMonitor:
         return sum(alarm.repeats_withheld for alarm in self._alarms.values())
 
     def assess(self, measured: LiftLoads, predicted: LiftLoads | None = None,
-               ends: LiftEnds | None = None) -> RiskAssessment:
+               ends: LiftEnds | None = None, no_prediction: str = '') -> RiskAssessment:
         """Assess one whole lift; see :func:`injury_monitor.core.assessment.assess_lift`."""
         work, limits = self._configured()
-        return assess_lift(work, limits, measured, predicted, ends, self.activation_window)
+        return assess_lift(work, limits, measured, predicted, ends, self.activation_window,
+                           no_prediction)
 
     def _configured(self) -> tuple[Work, LimitSet]:
         if self.work is None or self.limits is None:

@@ -1,0 +1,262 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""The node in this process, talked to over its topics and services."""
+
+import time
+
+import numpy as np
+import pytest
+
+rclpy = pytest.importorskip('rclpy', reason='rclpy is not installed')
+pytest.importorskip('lifting_interfaces.msg', reason='the interface package is not built')
+
+from lifecycle_msgs.msg import Transition  # noqa: E402
+from lifecycle_msgs.srv import ChangeState  # noqa: E402
+from lifting_interfaces.msg import (  # noqa: E402
+    AlarmEvent,
+    BodyMotion,
+    JointTorques,
+    MeasuredLift,
+    MuscleAnalysis,
+    PredictedLift,
+    RiskAssessment,
+    SolveReport,
+    SpineLoad,
+    Subject,
+    Task,
+)
+from lifting_interfaces.srv import AcknowledgeAlarm, ResetAlarm, ShelveAlarm  # noqa: E402
+from rclpy.executors import SingleThreadedExecutor  # noqa: E402
+
+from injury_monitor.injury_monitor_node import InjuryMonitorNode  # noqa: E402
+from lifting_node import qos  # noqa: E402
+from lifting_node.parameters import ParameterError  # noqa: E402
+from lifting_node.stamps import to_seconds, to_stamp  # noqa: E402
+
+HIGH, HIGH_HIGH = 'l5_s1_compression_high', 'l5_s1_compression_high_high'
+PATIENCE = 20.0
+
+
+class Station:
+    """The node and a client beside it, spun together."""
+
+    def __init__(self, namespace, parameters):
+        arguments = ['--ros-args', '-r', f'__ns:=/{namespace}']
+        for name, value in parameters.items():
+            arguments += ['-p', f'{name}:={value}']
+        rclpy.init(args=arguments)
+        self.node = InjuryMonitorNode()
+        self.client = rclpy.create_node('client', namespace=namespace)
+        self.executor = SingleThreadedExecutor()
+        self.executor.add_node(self.node)
+        self.executor.add_node(self.client)
+        self.alarms, self.assessments = [], []
+        self.client.create_subscription(AlarmEvent, 'alarms', self.alarms.append, qos.RESULTS)
+        self.client.create_subscription(RiskAssessment, 'risk_assessment',
+                                        self.assessments.append, qos.RESULTS)
+        topics = {'subject': (Subject, qos.LATCHED), 'task': (Task, qos.LATCHED),
+                  'body_motion': (BodyMotion, qos.FRAMES), 'spine_load': (SpineLoad, qos.FRAMES),
+                  'joint_torques': (JointTorques, qos.FRAMES),
+                  'muscle_analysis': (MuscleAnalysis, qos.FRAMES),
+                  'measured_lift': (MeasuredLift, qos.RESULTS),
+                  'predicted_lift': (PredictedLift, qos.RESULTS)}
+        self.publishers = {topic: self.client.create_publisher(kind, topic, profile)
+                           for topic, (kind, profile) in topics.items()}
+
+    def until(self, condition, what):
+        """Spin until a condition holds; fail by name when patience is over."""
+        deadline = time.monotonic() + PATIENCE
+        while not condition():
+            assert time.monotonic() < deadline, f'{what} did not happen in {PATIENCE} s'
+            self.executor.spin_once(timeout_sec=0.05)
+
+    def call(self, kind, name, request):
+        """Call a service and return its answer."""
+        service = self.client.create_client(kind, f'injury_monitor/{name}')
+        self.until(service.service_is_ready, f'service {name}')
+        future = service.call_async(request)
+        self.until(future.done, f'answer of {name}')
+        return future.result()
+
+    def transition(self, number):
+        """Ask for a lifecycle transition."""
+        request = ChangeState.Request(transition=Transition(id=number))
+        return self.call(ChangeState, 'change_state', request).success
+
+    def bring_up(self):
+        """Configure and activate the node, enter person and task."""
+        assert self.transition(Transition.TRANSITION_CONFIGURE)
+        assert self.transition(Transition.TRANSITION_ACTIVATE)
+        self.send('subject', Subject(pseudonym='P01', mass=70.0))
+        self.send('task', Task(task_id='bag', box_mass=12.0, coupling=Task.COUPLING_GOOD,
+                               lifts_per_day=50.0, lifts_per_minute=1.0, duration_hours=1.0))
+        self.until(lambda: self.node.monitor.work is not None, 'configuration')
+
+    def send(self, topic, message):
+        """Publish once there is a reader."""
+        publisher = self.publishers[topic]
+        self.until(lambda: publisher.get_subscription_count() > 0, f'reader of {topic}')
+        publisher.publish(message)
+
+    def live(self, start, compression, status=0):
+        """Send live samples at 100 Hz, ten a message."""
+        for first in range(0, len(compression), 10):
+            part = list(compression[first:first + 10])
+            message = SpineLoad(
+                source=SpineLoad.LIVE, lift_id='lift_001', compression=part,
+                anterior_shear=[0.0] * len(part), status=[status] * len(part),
+                time_from_start=[k / 100.0 for k in range(len(part))])
+            message.header.stamp = to_stamp(start + first / 100.0)
+            self.send('spine_load', message)
+
+    def close(self):
+        """End everything."""
+        self.executor.shutdown()
+        self.client.destroy_node()
+        self.node.destroy_node()
+        rclpy.shutdown()
+
+
+@pytest.fixture
+def station(request, monkeypatch):
+    monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+    result = Station(f'test_{request.node.name.split("[")[0]}', getattr(request, 'param', {}))
+    yield result
+    result.close()
+
+
+def block(kind, source, **fields):
+    time_from_start = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0]
+    message = kind(source=source, lift_id='lift_001', time_from_start=time_from_start,
+                   status=[0] * 6, **fields)
+    message.header.stamp = to_stamp(10.0)
+    return message
+
+
+def send_analysis(station, source, compression):
+    station.send('spine_load', block(SpineLoad, source, compression=[compression, *[0.0] * 5],
+                                     anterior_shear=[300.0] * 6))
+    station.send('joint_torques', block(JointTorques, source, joint_names=['hip'],
+                                        torque=[10.0, 50.0, *[10.0] * 4],
+                                        torque_lower=[-100.0] * 6, torque_upper=[100.0] * 6))
+    station.send('muscle_analysis', block(MuscleAnalysis, source, muscle_names=['MF_m1s_r'],
+                                          activation=[0.2] * 6))
+
+
+def send_measured_lift(station):
+    points = np.array([[[0.4, -0.1, h], [0.4, 0.1, h], [0.0, -0.1, 0.1], [0.0, 0.1, 0.1]]
+                       for h in (0.3, 0.6, 0.9)])
+    motion = BodyMotion(time_from_start=[0.0, 0.5, 1.0], points=points.ravel().tolist(),
+                        point_names=['hand_r', 'hand_l', 'ankle_r', 'ankle_l'])
+    motion.header.stamp = to_stamp(10.0)
+    lift = MeasuredLift(lift_id='lift_001', duration=1.0, motion=motion)
+    lift.header.stamp = to_stamp(10.0)
+    station.send('measured_lift', lift)
+
+
+def test_alarm_is_raised_acknowledged_and_reset(station, monkeypatch):
+    station.bring_up()
+    station.send('body_motion', BodyMotion(filter_delay=0.045))
+    station.until(lambda: station.node.filter_delay == 0.045, 'filter delay')
+    station.live(100.0, [600.0] * 50 + [7000.0] * 50 + [600.0] * 80)
+    station.until(lambda: len(station.alarms) == 4, 'two alarms raised and returned')
+    raised = {message.alarm_id: message for message in station.alarms[:2]}
+    assert set(raised) == {HIGH, HIGH_HIGH}
+    assert to_seconds(raised[HIGH].header.stamp) == pytest.approx(100.55)
+    assert raised[HIGH].filter_delay == 0.045
+    body_motion = station.publishers['body_motion']
+    station.until(lambda: body_motion.get_subscription_count() == 0, 'end of reading motion')
+    assert raised[HIGH].station == 'test_test_alarm_is_raised_acknowledged_and_reset'
+    request = {'alarm_id': HIGH_HIGH, 'operator_id': 'panel 1'}
+    refused = station.call(ResetAlarm, 'reset_alarm', ResetAlarm.Request(**request))
+    assert refused.error_code == ResetAlarm.Response.NOT_IN_THIS_STATE
+    assert 'LATCHED_UNACKNOWLEDGED' in refused.error_message
+    done = station.call(AcknowledgeAlarm, 'acknowledge_alarm', AcknowledgeAlarm.Request(**request))
+    assert done.error_code == AcknowledgeAlarm.Response.NONE
+    assert station.call(ResetAlarm, 'reset_alarm', ResetAlarm.Request(**request)).error_code == 0
+    station.until(lambda: len(station.alarms) == 6, 'acknowledged and reset')
+    assert station.alarms[-1].state == AlarmEvent.NORMAL
+    unknown = station.call(ShelveAlarm, 'shelve_alarm', ShelveAlarm.Request(
+        alarm_id='none', operator_id='panel 1', duration=5.0))
+    assert unknown.error_code == ShelveAlarm.Response.UNKNOWN_ALARM
+    long = station.call(ShelveAlarm, 'shelve_alarm', ShelveAlarm.Request(
+        alarm_id=HIGH, operator_id='panel 1', duration=1e9))
+    assert long.error_code == ShelveAlarm.Response.DURATION_REFUSED
+
+
+def test_lift_is_assessed_once_with_both_parts(station):
+    station.bring_up()
+    send_measured_lift(station)
+    send_analysis(station, SpineLoad.MEASURED, 3600.0)
+    send_analysis(station, SpineLoad.PREDICTED, 2400.0)
+    station.until(lambda: station.assessments, 'assessment')
+    result = station.assessments[0]
+    assert result.unnecessary_compression == pytest.approx(1200.0)
+    assert result.zone == RiskAssessment.ZONE_ACTION
+    assert result.torque_index_joints == ['hip']
+    assert result.torque_index_measured[0] == pytest.approx(0.5)
+    assert result.activation_index == pytest.approx(0.2)
+    assert result.lifting_index > 0.0
+    send_analysis(station, SpineLoad.PREDICTED, 2400.0)
+    station.until(lambda: station.node.counts['late parts of assessed lifts'] == 3, 'late parts')
+    assert len(station.assessments) == 1
+    assert station.alarms == []  # whole lifts are assessed, alarms come from the live stream
+
+
+def test_failed_prediction_is_not_waited_for(station):
+    station.bring_up()
+    send_measured_lift(station)
+    send_analysis(station, SpineLoad.MEASURED, 3000.0)
+    failed = PredictedLift(lift_id='lift_001', report=SolveReport(
+        status=SolveReport.PREDICTOR_INFEASIBLE, message='box too heavy'))
+    station.send('predicted_lift', failed)
+    station.until(lambda: station.assessments, 'assessment')
+    assert np.isnan(station.assessments[0].unnecessary_compression)
+    assert 'box too heavy' in station.assessments[0].summary
+
+
+@pytest.mark.parametrize('station', [{'result_wait': 1.0}], indirect=True)
+def test_silent_predictor_is_waited_for_only_so_long(station):
+    station.bring_up()
+    send_measured_lift(station)
+    send_analysis(station, SpineLoad.MEASURED, 3000.0)
+    station.until(lambda: station.assessments, 'assessment')
+    assert 'none came within 1 s' in station.assessments[0].summary
+
+
+def test_bad_messages_are_counted_and_the_node_goes_on(station):
+    station.bring_up()
+    station.send('spine_load', SpineLoad(source=SpineLoad.LIVE, time_from_start=[0.0],
+                                         compression=[], anterior_shear=[0.0], status=[0]))
+    station.until(lambda: station.node.counts['errors'] == 1, 'first error')
+    assert 'SpineLoad.compression' in station.node.last_error
+    station.send('task', Task(task_id='bad', coupling=Task.COUPLING_GOOD, box_mass=-1.0))
+    station.until(lambda: station.node.counts['errors'] == 2, 'second error')
+    assert 'box_mass' in station.node.last_error
+    station.live(0.0, [7000.0] * 50, status=302)
+    station.live(10.0, [7000.0] * 50)
+    station.until(lambda: len(station.alarms) == 2, 'alarms from good samples')
+    assert station.node.monitor.counts['spine_load'].unsolved == 50
+
+
+def test_a_known_alarm_is_not_announced_by_the_next_process(tmp_path, monkeypatch):
+    monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+    for run, announced in (('first', 2), ('second', 0)):
+        station = Station('test_journal', {'journal': tmp_path / 'alarms.jsonl'})
+        try:
+            station.bring_up()
+            station.live(100.0, [7000.0] * 50)
+            station.until(lambda s=station: s.node.monitor.counts['spine_load'].used == 50, run)
+            station.until(lambda s=station, n=announced: len(s.alarms) >= n, f'{run} alarms')
+            assert len(station.alarms) == announced
+        finally:
+            station.close()
+
+
+def test_bad_parameter_is_refused(monkeypatch):
+    monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+    try:
+        with pytest.raises(ParameterError, match='max_gap'):
+            Station('test_bad_parameter', {'max_gap': -1.0})
+    finally:
+        rclpy.try_shutdown()
