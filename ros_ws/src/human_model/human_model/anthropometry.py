@@ -23,9 +23,6 @@ from human_model.tables import length_sum, read_table
 
 Array = npt.NDArray[np.float64]
 
-#: Stature [m] and mass [kg] of the generic full-body model the reference lengths belong to.
-REFERENCE = {'stature': 1.80, 'mass': 75.16}
-
 #: Share of the foot's mass that is in the toes, and the toes' centre of mass and inertia, from
 #: the body ``toes_r`` of Rajagopal et al. 2016 (0.2166 kg of 1.5666 kg talus, calcaneus, toes).
 TOES_MASS_FRACTION = 0.2166 / 1.5666
@@ -121,16 +118,19 @@ def segment_lengths(subject: Subject) -> tuple[dict[str, float], dict[str, str]]
         If a measured length has an unknown name or a length comes out not positive.
     """
     measured = {**(subject.calibration.lengths if subject.calibration else {}), **subject.lengths}
-    table = read_table('segment_lengths')
+    table = [row for row in read_table('segment_lengths') if row['sex'] in ('both', subject.sex)]
     unknown = sorted(set(measured) - {row['length'] for row in table})
     if unknown:
         raise AnthropometryError(f'subject.lengths: unknown length {unknown[0]!r}; known are '
                                  + ', '.join(row['length'] for row in table))
     own = body_dimensions(subject.sex, subject.stature, subject.mass)
-    reference = body_dimensions('male', REFERENCE['stature'], REFERENCE['mass'])
     predicted: dict[str, float] = {}
     for row in table:
         if row['reference']:
+            # The generic full-body models are men; other references are of the subject's sex.
+            reference = body_dimensions('male' if row['sex'] == 'both' else subject.sex,
+                                        float(row['reference_stature']),
+                                        float(row['reference_mass']))
             value = float(row['reference']) * own[row['scale_by']] / reference[row['scale_by']]
         else:
             value = length_sum(row['terms'], {**own, **predicted})
@@ -193,18 +193,17 @@ def _dumas_bodies(sex: str, lengths: Mapping[str, float]) -> dict[str, tuple[flo
     """Mass fraction, centre of mass and unit-mass-fraction inertia, segment by segment."""
     axes = _long_axes(lengths)
     #: Dumas' origins that are not the proximal joint of this skeleton.
-    origin = {'pelvis': axes['pelvis'], 'lumbar': axes['lumbar'], 'thorax': axes['thorax']}
+    origin = {name: axes[name] for name in ('pelvis', 'lumbar', 'thorax')}
+    #: Lengths Dumas' fractions belong to where the segment has no such length itself.
+    sizes = {'pelvis': lengths['pelvis_length'],
+             'foot': float(np.hypot(lengths['ankle_mtp'], lengths['mtp_drop']))}
     right: dict[str, tuple[float, Array, Array]] = {}
     for row in read_table('dumas_inertia'):
         if row['sex'] != sex:
             continue
         name = row['segment']
-        if name == 'foot':
-            length = float(np.hypot(lengths['ankle_mtp'], lengths['mtp_drop']))
-            turn = np.eye(3)
-        else:
-            length = float(np.linalg.norm(axes[name]))
-            turn = _upright_to(axes[name] / length) if length > 0 else np.eye(3)
+        turn = _upright_to(axes[name]) if name in axes else np.eye(3)
+        length = sizes.get(name, float(np.linalg.norm(axes.get(name, 0.0))))
         mass = float(row['mass_fraction'])
         com = np.array([float(row[key]) for key in ('com_x', 'com_y', 'com_z')]) * length
         inertia = _dumas_tensor(row) * mass * length**2
@@ -231,7 +230,10 @@ def _dumas_tensor(row: Mapping[str, str]) -> Array:
 
 def _upright_to(direction: Array) -> Array:
     """Rotation in the sagittal plane that takes the upward axis to a direction without y."""
-    x, _, z = direction
+    norm = np.linalg.norm(direction)
+    if norm == 0.0:
+        return np.eye(3)
+    x, _, z = direction / norm
     return np.array([[z, 0.0, x], [0.0, 1.0, 0.0], [-x, 0.0, z]])
 
 

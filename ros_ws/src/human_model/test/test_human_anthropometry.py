@@ -16,6 +16,7 @@ from human_model.anthropometry import (
 )
 from human_model.errors import AnthropometryError, HumanModelError
 from human_model.inertia import combine, positive_inertia, rotate, shift
+from human_model.skeleton_3d import Skeleton3D
 from human_model.subject import Calibration, Subject
 from human_model.tables import length_sum, read_table
 
@@ -41,13 +42,34 @@ def test_mean_soldier_has_the_survey_s_mean_dimensions():
     assert women['acromionradialelength'] == pytest.approx(0.3112, abs=2e-4)
 
 
-def test_hanging_wrist_is_as_high_as_measured():
-    """The chain ankle to wrist ends at ANSUR II's own wrist height, which it does not use."""
-    lengths, _ = segment_lengths(Subject('mean', 'male', 85.52, 1.7562, 30))
-    wrist = sum(lengths[name] for name in ('ankle_height', 'shank', 'thigh', 'l5s1_height',
-                                           't12l1_height', 'shoulder_height'))
-    wrist -= lengths['upper_arm'] + lengths['forearm']
-    assert wrist == pytest.approx(0.8475, abs=0.015)
+def test_lengths_are_near_those_of_another_study():
+    """De Leva 1996, joint centre to joint centre, 100 men of 1.741 m and 73.0 kg."""
+    lengths, _ = segment_lengths(Subject('mean', 'male', 73.0, 1.741, 24))
+    for name, published in (('thigh', 0.4222), ('shank', 0.4403), ('forearm', 0.2689),
+                            ('upper_arm', 0.2817), ('hand', 0.1879)):
+        assert lengths[name] == pytest.approx(published, abs=0.03), name
+    hip_to_c7 = sum(lengths[name] for name in ('l5s1_height', 't12l1_height', 'c7_height'))
+    assert hip_to_c7 == pytest.approx(0.6033, abs=0.01)
+    foot = sum(lengths[name] for name in ('heel_length', 'ankle_mtp', 'toes'))
+    assert foot == pytest.approx(0.2581, abs=0.015)
+
+
+def test_centre_of_mass_of_the_upper_body_is_where_another_study_puts_it():
+    """Head, thorax, abdomen and arms over L5-S1 against de Leva 1996: 0.274 m of 1.741 m.
+
+    Computed from de Leva's table with L5-S1 0.116 m above the hips, the pelvis left out; their
+    middle trunk reaches lower than our lumbar segment.
+    """
+    parameters = segment_parameters(Subject('mean', 'male', 73.0, 1.741, 24))
+    body = Skeleton3D(parameters)
+    frames = body.forward(body.standing())
+    upper = [i for i, name in enumerate(parameters.segments)
+             if name.startswith(('lumbar', 'thorax', 'head', 'upper_arm', 'forearm', 'hand'))]
+    heights = np.array([frames[i, 2, 3] + parameters.com[i, 2] for i in upper])
+    mass = parameters.mass[upper]
+    assert mass.sum() / 73.0 == pytest.approx(0.491, abs=0.01)
+    centre = mass @ heights / mass.sum() - body.points(body.standing())['l5_s1'][2]
+    assert centre == pytest.approx(0.274, abs=0.02)
 
 
 def test_mass_fractions_are_those_of_table_2_2(man):
