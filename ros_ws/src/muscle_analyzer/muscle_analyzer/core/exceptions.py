@@ -41,3 +41,7 @@ class OptionError(MuscleAnalyzerError):
 
 class ModelFileError(MuscleAnalyzerError):
     """The musculoskeletal model's file is not installed."""
+
+
+class NotConfiguredError(MuscleAnalyzerError):
+    """A result was asked for before a subject was given."""

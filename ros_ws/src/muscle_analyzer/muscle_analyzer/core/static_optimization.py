@@ -82,6 +82,11 @@ class MuscleBalance:
     unbalanced: tuple[str, ...]
     report: SolveReport
 
+    @property
+    def converged(self) -> bool:
+        """Whether the optimum was found, be the muscles strong enough or not."""
+        return self.report.status is not SolveStatus.MUSCLE_NOT_CONVERGED
+
 
 class StaticOptimization:
     """

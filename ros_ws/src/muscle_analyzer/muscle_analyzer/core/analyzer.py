@@ -1,0 +1,164 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+From a body motion to muscle forces and the L5-S1 reaction: the pipeline of this package.
+
+One sample goes through transfer to the musculoskeletal model, inverse dynamics, static
+optimisation (equation 4.10) and joint reaction (equation 4.11).  Live blocks of one sample and
+whole lifts take the same way.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+
+import numpy as np
+from human_model.motion import BodyMotion
+from human_model.skeleton import Skeleton
+from human_model.skeleton_2d import Skeleton2D
+from human_model.skeleton_3d import Skeleton3D
+from human_model.subject import Subject
+from numpy.typing import NDArray
+
+from muscle_analyzer.core.analysis_sample import AnalysisSample, SampleSolver
+from muscle_analyzer.core.analyzer_options import MuscleAnalyzerOptions
+from muscle_analyzer.core.disc_frame import disc_option
+from muscle_analyzer.core.exceptions import InputArrayError, NotConfiguredError
+from muscle_analyzer.core.muscle_analysis import MuscleAnalysis
+from muscle_analyzer.core.osim_model import OsimModel
+from muscle_analyzer.core.osim_reader import read_osim
+from muscle_analyzer.core.subject_model import lifting_model_path, subject_model
+from muscle_analyzer.core.transfer import MotionTransfer
+
+Array = NDArray[np.float64]
+
+#: Where a motion may come from.
+SOURCES = ('live', 'measured', 'predicted')
+_SKELETONS: dict[str, type[Skeleton2D] | type[Skeleton3D]] = {
+    '2d_10dof': Skeleton2D,
+    '3d_40dof': Skeleton3D,
+}
+
+
+class MuscleAnalyzer:
+    """
+    Muscle analysis of one subject.
+
+    Call `configure` once per subject, then `analyze` on block after block.  A live stream of
+    blocks is warm-started from sample to sample; lifts start afresh.
+    """
+
+    def __init__(self, options: MuscleAnalyzerOptions | None = None) -> None:
+        self.options = options or MuscleAnalyzerOptions()
+        self._disc = disc_option(self.options.disc_frame)
+        self._generic: OsimModel | None = None
+        self._subject: Subject | None = None
+        self._streams: dict[tuple[str, str], tuple[MotionTransfer, SampleSolver]] = {}
+
+    def configure(self, subject: Subject) -> None:
+        """
+        Scale the model to a subject and prepare everything that a sample needs.
+
+        Raises
+        ------
+        MuscleAnalyzerError
+            If the model cannot be read or scaled.
+        HumanModelError
+            If the subject's measures cannot be used.
+        """
+        if self._generic is None:
+            self._generic = read_osim(self.options.model_path or lifting_model_path())
+        skeleton = Skeleton3D.of(subject)
+        upright = np.zeros(len(skeleton.coordinates))
+        self._model = subject_model(
+            self._generic, skeleton.points(upright), subject.mass, self.options.strength
+        )
+        self._subject = subject
+        self._streams = {}
+        # Live and recorded 3D motion share all compiled functions: load them now.
+        self._warm_up(skeleton)
+
+    def _warm_up(self, skeleton: Skeleton) -> None:
+        q = skeleton.standing()
+        motion = skeleton.body_motion(0.0, q, np.zeros_like(q), np.zeros_like(q))
+        transfer, solver = self._stream('live', skeleton.name)
+        solver.solve(transfer.step(motion, 0), motion, 0)
+        self._streams = {}
+
+    def _stream(self, source: str, skeleton: str) -> tuple[MotionTransfer, SampleSolver]:
+        """Give the warm-started solvers of one kind of motion."""
+        key = (source, skeleton)
+        if key not in self._streams:
+            assert self._subject is not None
+            self._streams[key] = (
+                MotionTransfer(self._model, _SKELETONS[skeleton].of(self._subject)),
+                SampleSolver(self._model, self.options),
+            )
+        return self._streams[key]
+
+    def analyze(self, motion: BodyMotion, lift_id: str = '', source: str = 'live') -> MuscleAnalysis:
+        """
+        Analyse a block of one or more samples.
+
+        Parameters
+        ----------
+        motion
+            Motion with the forces on feet and hands.
+        lift_id
+            Identifier of the lift; empty outside one.
+        source
+            ``'live'``, ``'measured'`` or ``'predicted'``.
+
+        Raises
+        ------
+        NotConfiguredError
+            If no subject has been given.
+        TransferError
+            If the motion is not one of this subject.
+        InputArrayError
+            If the source is not known.
+        """
+        if self._subject is None:
+            raise NotConfiguredError('analyze: no subject yet, call configure first')
+        if source not in SOURCES:
+            raise InputArrayError(f'source {source!r}: one of {SOURCES} is needed')
+        transfer, solver = self._stream(source, motion.skeleton)
+        if source != 'live':
+            transfer.reset()
+            solver.reset()
+        samples = []
+        for k in range(len(motion)):
+            began = time.perf_counter()
+            pose = transfer.step(motion, k)
+            transferred = time.perf_counter() - began
+            sample = solver.solve(pose, motion, k)
+            report = replace(sample.report, build_time=sample.report.build_time + transferred)
+            samples.append(replace(sample, report=report))
+        return self._collect(samples, solver, motion, lift_id, source)
+
+    def _collect(
+        self,
+        samples: list[AnalysisSample],
+        solver: SampleSolver,
+        motion: BodyMotion,
+        lift_id: str,
+        source: str,
+    ) -> MuscleAnalysis:
+        assert self._subject is not None
+
+        def stack(name: str) -> Array:
+            return np.array([getattr(sample, name) for sample in samples])
+
+        return MuscleAnalysis(
+            lift_id=lift_id,
+            source=source,
+            pseudonym=self._subject.pseudonym,
+            body_mass=self._subject.mass,
+            time=motion.time,
+            muscle_names=solver.muscle_names,
+            coordinate_names=solver.coordinate_names,
+            disc_frame=str(self._disc),
+            reports=tuple(sample.report for sample in samples),
+            **{name: stack(name) for name in AnalysisSample.array_fields()},
+        )

@@ -1,0 +1,127 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""The result of the muscle analysis of a block of motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from human_model.report import SolveReport
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class MuscleAnalysis:
+    """
+    Muscle forces and L5-S1 loads of n samples.
+
+    A sample whose status is not `OK` is not good data.  What could not be computed is NaN; what
+    muscles that are too weak leave to the reserves is kept and marked.
+
+    Attributes
+    ----------
+    lift_id : str
+        Empty outside a lift.
+    source : str
+        ``'live'``, ``'measured'`` or ``'predicted'``.
+    pseudonym, body_mass
+        Of the person; mass [kg].
+    time : (n,)
+        [s].
+    muscle_names : tuple of str, n_m
+    activation : (n, n_m)
+        0 to 1.
+    force : (n, n_m)
+        Along the tendon [N].
+    coordinate_names : tuple of str, n_c
+        Coordinates to balance, OpenSim names and signs; the pelvis is not among them.
+    torque : (n, n_c)
+        Net joint torque to balance [N m].
+    reserve : (n, n_c)
+        Part of it that reserves took [N m].
+    disc_frame : str
+        Name of the source of the disc's orientation.
+    l5_s1_force, l5_s1_moment : (n, 3)
+        Of S1 on L5 about the joint centre, in the disc frame (anterior, left, cranial) [N, N m];
+        compression is +z, anterior shear -x, lateral shear +y.
+    compression_per_degree, anterior_shear_per_degree : (n,)
+        Change per degree of more forward tilt of the disc frame [N / deg].
+    net_moment_top_down, net_moment_bottom_up : (n, 3)
+        Net moment at L5-S1 from trunk, arms, head and box, and from plates, legs and pelvis;
+        world frame (REP-103) [N m].
+    pelvis_residual : (n, 6)
+        Force [N] and moment about the pelvis' origin [N m] that the motion asks for beyond the
+        external forces; world frame.
+    hand_distance, foot_distance : (n, 2)
+        Largest distance of the points of the [right, left] hand and foot between the two
+        skeletons after the transfer [m].
+    trunk_angle : (n,)
+        Angle between the thoraces of the two skeletons [rad].
+    hand_angle, foot_angle : (n, 2)
+        Angles between hands and feet [right, left] of the two skeletons [rad].
+    reports : tuple of SolveReport, n
+        Primal residual: balance of the torques [N m]; dual residual: stationarity.
+    """
+
+    lift_id: str
+    source: str
+    pseudonym: str
+    body_mass: float
+    time: Array
+    muscle_names: tuple[str, ...]
+    activation: Array
+    force: Array
+    coordinate_names: tuple[str, ...]
+    torque: Array
+    reserve: Array
+    disc_frame: str
+    l5_s1_force: Array
+    l5_s1_moment: Array
+    compression_per_degree: Array
+    anterior_shear_per_degree: Array
+    net_moment_top_down: Array
+    net_moment_bottom_up: Array
+    pelvis_residual: Array
+    hand_distance: Array
+    foot_distance: Array
+    trunk_angle: Array
+    hand_angle: Array
+    foot_angle: Array
+    reports: tuple[SolveReport, ...]
+
+    def __len__(self) -> int:
+        """Give the number of samples."""
+        return int(self.time.size)
+
+    @property
+    def compression(self) -> Array:
+        """Compression of the L5-S1 disc (n,) [N]."""
+        return self.l5_s1_force[:, 2]
+
+    @property
+    def anterior_shear(self) -> Array:
+        """Anterior shear at L5-S1 (n,) [N]: positive when L5 is pushed forward on S1."""
+        return -self.l5_s1_force[:, 0]
+
+    @property
+    def lateral_shear(self) -> Array:
+        """Lateral shear at L5-S1 (n,) [N], positive to the left."""
+        return self.l5_s1_force[:, 1]
+
+    @property
+    def net_moment_difference(self) -> Array:
+        """Top-down less bottom-up net moment at L5-S1 (n, 3), world frame [N m]."""
+        return self.net_moment_top_down - self.net_moment_bottom_up
+
+    @property
+    def status(self) -> NDArray[np.int64]:
+        """Status of each sample (n,)."""
+        return np.array([int(report.status) for report in self.reports], np.int64)
+
+    @property
+    def report(self) -> SolveReport:
+        """Report of the worst sample: highest status, then largest residual."""
+        return max(self.reports, key=lambda report: (int(report.status), report.primal_residual))
