@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import importlib
 import importlib.metadata
 import os
 import re
@@ -94,3 +95,26 @@ def test_missing_python_names_the_packages(tmp_path: Path) -> None:
                             env=environment, capture_output=True, timeout=60)
     assert result.returncode == 1
     assert 'python3-venv' in result.stderr
+
+
+def test_missing_compilers_are_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.syspath_prepend(str(SCRIPTS))
+    set_up = importlib.import_module('setup_environment')
+    monkeypatch.setenv('PATH', str(tmp_path))
+    monkeypatch.setenv('CC', 'missing-compiler')
+    with pytest.raises(set_up.SetUpError, match=r'apt install gcc g\+\+'):
+        set_up.check_compilers()
+
+
+def test_stamp_follows_the_content(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.syspath_prepend(str(SCRIPTS))
+    stamps = importlib.import_module('stamps')
+    source, stamp_file = tmp_path / 'input', tmp_path / 'stamps' / 'step'
+    source.write_text('one')
+    first = stamps.Stamp(stamp_file, stamps.digest([source], '3.12'))
+    assert not first.is_current()
+    first.write()
+    assert first.is_current()
+    assert not stamps.Stamp(stamp_file, stamps.digest([source], '3.13')).is_current()
+    source.write_text('two')
+    assert not stamps.Stamp(stamp_file, stamps.digest([source], '3.12')).is_current()
