@@ -136,7 +136,7 @@ def _strength(strength: JointStrength, side: str) -> Array:
         if min(c[0], c[1], c[4], c[7]) < 0.0:
             raise TaskError(
                 f'{strength.coefficient_set}: {side} strength of {joint} has negative '
-                f'coefficients ({bound.source}); the optimisation needs a set that cannot change sign'
+                f'coefficients ({bound.source}); a set that cannot change sign is needed'
             )
         c[[0, 1, 4, 7]] *= bound.magnitude
         c[[2, 3]] /= bound.angle_factor, abs(bound.angle_factor)

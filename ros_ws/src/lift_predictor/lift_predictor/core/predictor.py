@@ -129,6 +129,7 @@ class LiftPredictor:
         begin = time.perf_counter()
         duration = lift.end - lift.start
         try:
+            _require_good(lift)
             task = build_task(self.person, lift, box, self.options.posture_tolerance)
         except (TaskError, UnreachableError) as error:
             status = (
@@ -231,6 +232,14 @@ class LiftPredictor:
         return predicted, comparison
 
 
+def _require_good(lift: Lift) -> None:
+    if not lift.report.ok:
+        raise TaskError(
+            f'{lift.lift_id}: the recorded lift is not good data '
+            f'({lift.report.status.name}: {lift.report.message})'
+        )
+
+
 def _judge(best: Optimum, check: Verification | None) -> tuple[SolveStatus, str]:
     if best.converged and check is not None and check.passed:
         return SolveStatus.OK, f'optimal from the start "{best.start}"'
@@ -241,7 +250,7 @@ def _judge(best: Optimum, check: Verification | None) -> tuple[SolveStatus, str]
         )
     detail = f'largest violation: {best.violated or "none"} ({best.violation:.3g})'
     if best.outcome == TIMED_OUT:
-        return SolveStatus.PREDICTOR_NOT_CONVERGED, f'time limit reached; {detail}'
+        return SolveStatus.PREDICTOR_TIME_LIMIT, f'time limit reached; {detail}'
     if best.outcome == INFEASIBLE:
         return SolveStatus.PREDICTOR_INFEASIBLE, f'no feasible motion was found; {detail}'
     return SolveStatus.PREDICTOR_NOT_CONVERGED, f'IPOPT: {best.outcome}; {detail}'

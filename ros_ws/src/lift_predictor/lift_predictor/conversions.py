@@ -1,0 +1,142 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Messages of the predictor's results, and of the task it reads."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from builtin_interfaces.msg import Duration
+from lifting_interfaces.msg import LiftComparison as LiftComparisonMsg
+from lifting_interfaces.msg import PredictedLift as PredictedLiftMsg
+from lifting_interfaces.msg import Task as TaskMsg
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+from human_model.motion import Lift
+from human_model.subject import Subject
+from lift_predictor.core.comparison import COMPARED_JOINTS, LiftComparison
+from lift_predictor.core.parameters import JOINTS
+from lift_predictor.core.prediction import PredictedLift2D
+from lift_predictor.core.task import Box
+from lifting_node.conversions import (
+    LABORATORY,
+    MotionQuality,
+    flat,
+    lift_from_msg,
+    motion_to_msg,
+    report_to_msg,
+    subject_from_msg,
+)
+from lifting_node.stamps import to_stamp
+
+__all__ = [
+    'box_from_msg',
+    'comparison_to_msg',
+    'lift_from_msg',
+    'prediction_to_msg',
+    'subject_from_msg',
+    'trajectory_to_msg',
+]
+
+
+def box_from_msg(task: TaskMsg, mass: float) -> Box:
+    """Return what was lifted: the task's box with a given mass [kg].
+
+    Raises
+    ------
+    TaskError
+        If mass or size is negative or not finite.
+    """
+    places = []
+    for point in (task.box_start, task.box_end):
+        place = np.array([point.x, point.y, point.z])
+        places.append(None if np.all(np.isnan(place)) else place)
+    depth = float(task.box_size[0]) if mass > 0.0 else 0.0
+    return Box(mass=mass, depth=depth, start=places[0], end=places[1])
+
+
+def prediction_to_msg(
+    prediction: PredictedLift2D, lift: Lift, subject: Subject
+) -> PredictedLiftMsg:
+    """Return the message of a prediction; without a solution its arrays are empty."""
+    message = PredictedLiftMsg(
+        lift_id=prediction.lift_id,
+        subject=subject.pseudonym,
+        body_mass=subject.mass,
+        box_mass=prediction.box_mass,
+        maximum_weight=False,
+        duration=prediction.duration,
+        torque_names=list(prediction.torque_names),
+        torque=flat(prediction.torque),
+        torque_lower=flat(prediction.torque_lower),
+        torque_upper=flat(prediction.torque_upper),
+        zero_moment_point=flat(prediction.zmp),
+        support_rear=float(prediction.support[0]),
+        support_front=float(prediction.support[1]),
+        report=report_to_msg(prediction.report),
+    )
+    message.header.stamp = to_stamp(lift.start)
+    message.header.frame_id = LABORATORY
+    if prediction.verification is not None:
+        message.verified_names = list(prediction.verification.violation)
+        message.verified_violation = flat(list(prediction.verification.violation.values()))
+    if prediction.lift is not None:
+        motion = prediction.lift.motion
+        message.motion = motion_to_msg(motion, MotionQuality.exact(len(motion)))
+    return message
+
+
+def trajectory_to_msg(prediction: PredictedLift2D) -> JointTrajectory:
+    """Return the joint trajectory of a solved prediction, all coordinates of the 2D skeleton.
+
+    Efforts are the joint torques [N m]; the free pelvis has none.
+    """
+    assert prediction.lift is not None
+    motion = prediction.lift.motion
+    message = JointTrajectory(joint_names=list(motion.coordinates))
+    message.header.stamp = to_stamp(prediction.lift.start)
+    message.header.frame_id = LABORATORY
+    effort = np.zeros((len(motion), len(motion.coordinates)))
+    for column, name in enumerate(prediction.torque_names):
+        effort[:, motion.coordinates.index(name)] = prediction.torque[:, column]
+    for row, time in enumerate(motion.time - motion.time[0]):
+        fraction, whole = math.modf(time)
+        message.points.append(
+            JointTrajectoryPoint(
+                positions=flat(motion.position[row]),
+                velocities=flat(motion.velocity[row]),
+                accelerations=flat(motion.acceleration[row]),
+                effort=flat(effort[row]),
+                time_from_start=Duration(sec=int(whole), nanosec=round(fraction * 1e6) * 1000),
+            )
+        )
+    return message
+
+
+def comparison_to_msg(
+    comparison: LiftComparison, prediction: PredictedLift2D, lift: Lift
+) -> LiftComparisonMsg:
+    """Return the message of a comparison."""
+    loads = comparison.measured
+    message = LiftComparisonMsg(
+        lift_id=prediction.lift_id,
+        joint_names=list(COMPARED_JOINTS),
+        joint_rmse=flat(comparison.joint_rmse),
+        joint_pearson=flat(comparison.joint_pearson),
+        vertical_force_rmse=comparison.vertical_force_rmse,
+        vertical_force_pearson=comparison.vertical_force_pearson,
+        horizontal_force_rmse=comparison.horizontal_force_rmse,
+        horizontal_force_pearson=comparison.horizontal_force_pearson,
+        measured_effort=comparison.measured_effort,
+        predicted_effort=comparison.predicted_effort,
+        torque_names=list(JOINTS),
+        time_from_start=flat(comparison.time),
+        torque=flat(loads.torque),
+        torque_lower=flat(loads.lower),
+        torque_upper=flat(loads.upper),
+        report=report_to_msg(prediction.report),
+    )
+    message.header.stamp = to_stamp(lift.start)
+    message.header.frame_id = LABORATORY
+    return message

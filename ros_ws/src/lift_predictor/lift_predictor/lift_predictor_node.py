@@ -1,0 +1,100 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Lifecycle node round the lift predictor: recorded lifts in, optimal lifts out."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from typing import Final
+
+from lifting_interfaces.msg import LiftComparison, MeasuredLift, PredictedLift, Task
+from lifting_interfaces.msg import Subject as SubjectMsg
+from trajectory_msgs.msg import JointTrajectory
+
+from human_model.errors import HumanModelError
+from human_model.motion import Lift
+from human_model.subject import Subject
+from lift_predictor import conversions
+from lift_predictor.core.exceptions import LiftPredictorError
+from lift_predictor.core.predictor import LiftPredictor, PredictorOptions
+from lifting_node import qos
+from lifting_node.pipeline_node import PipelineNode
+from lifting_node.run import run_node
+
+WAITING_LIFTS: Final = 100
+"""Lifts kept until subject and task are known."""
+
+
+class LiftPredictorNode(PipelineNode):
+    """Predicts each recorded lift of one station; the namespace is the station."""
+
+    PACKAGE = 'lift_predictor'
+    INPUT_ERRORS = (LiftPredictorError, HumanModelError)
+
+    def build(self) -> None:
+        """Load (once per machine: compile) the programme; create publishers and subscriptions."""
+        self.predictor = LiftPredictor(PredictorOptions(**self.values))
+        programme = self.predictor.programme
+        self.get_logger().info(f'{programme.how} ({programme.build_time:.2f} s)')
+        self._subject: Subject | None = None
+        self._task: Task | None = None
+        self._waiting: OrderedDict[str, Lift] = OrderedDict()
+        self._predicted = self.advertise(PredictedLift, 'predicted_lift', qos.RESULTS)
+        self._trajectory = self.advertise(
+            JointTrajectory, 'predicted_lift/joint_trajectory', qos.RESULTS
+        )
+        self._comparison = self.advertise(LiftComparison, 'lift_comparison', qos.RESULTS)
+        self.subscribe(SubjectMsg, 'subject', self._on_subject, qos.LATCHED)
+        self.subscribe(Task, 'task', self._on_task, qos.LATCHED)
+        self.subscribe(MeasuredLift, 'measured_lift', self._on_measured_lift, qos.RESULTS)
+
+    def _on_subject(self, message: SubjectMsg) -> None:
+        subject = conversions.subject_from_msg(message)
+        self.predictor.configure(subject)
+        self._subject = subject
+        self._predict_waiting()
+
+    def _on_task(self, message: Task) -> None:
+        self._task = message
+        self._predict_waiting()
+
+    def _on_measured_lift(self, message: MeasuredLift) -> None:
+        lift = conversions.lift_from_msg(message)
+        self._waiting[lift.lift_id] = lift
+        while len(self._waiting) > WAITING_LIFTS:
+            dropped, _ = self._waiting.popitem(last=False)
+            self.report_error(f'measured_lift {dropped}: no subject or task came, dropped')
+        self._predict_waiting()
+
+    def _predict_waiting(self) -> None:
+        """Predict the lifts that were waiting, once person and task are known."""
+        if self._subject is None or self._task is None:
+            return
+        while self._waiting:
+            _, lift = self._waiting.popitem(last=False)
+            self._predict(lift, self._subject, self._task)
+
+    def _predict(self, lift: Lift, subject: Subject, task: Task) -> None:
+        box = conversions.box_from_msg(task, lift.box_mass)
+        prediction, comparison = self.predictor.predict_and_compare(lift, box)
+        self.counts['predicted' if prediction.report.ok else 'not predicted'] += 1
+        self._predicted.publish(conversions.prediction_to_msg(prediction, lift, subject))
+        if not prediction.report.ok or comparison is None:
+            self.report_error(f'{lift.lift_id}: {prediction.report.message}')
+            return
+        self._trajectory.publish(conversions.trajectory_to_msg(prediction))
+        self._comparison.publish(conversions.comparison_to_msg(comparison, prediction, lift))
+        self.get_logger().info(
+            f'{lift.lift_id}: {prediction.report.message}; effort '
+            f'{comparison.predicted_effort:.3g} s, recorded {comparison.measured_effort:.3g} s; '
+            f'solved in {prediction.report.solve_time:.2f} s'
+        )
+
+
+def main(args: list[str] | None = None) -> None:
+    """Run the node."""
+    run_node(LiftPredictorNode, args)
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,117 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Derivatives of the programme against finite differences, and its rows against the task."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from lift_predictor.core.evaluation import evaluate, sample
+from lift_predictor.core.nlp import HAND_SCALE, Grid, LiftBounds, programme_functions
+from lift_predictor.core.node_functions import NODE_ROWS
+from lift_predictor.core.parameters import LiftParameters
+
+GRID = Grid(6, 7)
+FUNCTIONS = {function.name(): function for function in programme_functions(GRID)}
+
+
+@pytest.fixture(scope='module')
+def point() -> np.ndarray:
+    rng = np.random.default_rng(11)
+    low, high = np.radians([-60, 0, 10, 10, 10, -10]), np.radians([10, 90, 90, 90, 90, 25])
+    return rng.uniform(low, high, (GRID.spline.n_free, 6)).ravel()
+
+
+@pytest.fixture(scope='module')
+def vector(parameters: LiftParameters) -> np.ndarray:
+    return parameters.pack()
+
+
+def dense(value) -> np.ndarray:
+    return np.asarray(value)
+
+
+def test_gradient(point: np.ndarray, vector: np.ndarray) -> None:
+    f, gradient = FUNCTIONS['nlp_grad_f'](point, vector)
+    assert float(f) == pytest.approx(float(FUNCTIONS['nlp_f'](point, vector)), rel=1e-14)
+    h = 1e-6
+    for i in range(GRID.n_variables):
+        step = h * np.eye(GRID.n_variables)[i]
+        change = FUNCTIONS['nlp_f'](point + step, vector) - FUNCTIONS['nlp_f'](point - step, vector)
+        assert float(gradient[i]) == pytest.approx(float(change) / (2 * h), rel=1e-5, abs=1e-5)
+
+
+def test_jacobian(point: np.ndarray, vector: np.ndarray) -> None:
+    g, jacobian = (dense(value) for value in FUNCTIONS['nlp_jac_g'](point, vector))
+    assert g.shape == (len(GRID.row_names), 1)
+    h = 1e-6
+    for i in range(GRID.n_variables):
+        step = h * np.eye(GRID.n_variables)[i]
+        high, low = (dense(FUNCTIONS['nlp_g'](point + sign * step, vector)) for sign in (1, -1))
+        np.testing.assert_allclose(
+            jacobian[:, i], ((high - low) / (2 * h))[:, 0], rtol=2e-5, atol=2e-5
+        )
+
+
+def test_hessian(point: np.ndarray, vector: np.ndarray) -> None:
+    rng = np.random.default_rng(2)
+    sigma, multiplier = 0.7, rng.normal(size=len(GRID.row_names))
+    hessian = dense(FUNCTIONS['nlp_hess_l'](point, vector, sigma, multiplier))
+    assert np.all(np.tril(hessian, -1) == 0.0)
+    full = hessian + np.triu(hessian, 1).T
+
+    def gradient(x: np.ndarray) -> np.ndarray:
+        return dense(FUNCTIONS['nlp_grad'](x, vector, sigma, multiplier)[2])[:, 0]
+
+    h = 1e-6
+    for i in range(GRID.n_variables):
+        step = h * np.eye(GRID.n_variables)[i]
+        column = (gradient(point + step) - gradient(point - step)) / (2 * h)
+        np.testing.assert_allclose(full[:, i], column, rtol=1e-5, atol=1e-4)
+
+
+def test_rows_and_objective_are_those_of_the_model(
+    point: np.ndarray, vector: np.ndarray, parameters: LiftParameters
+) -> None:
+    control = point.reshape(GRID.spline.n_free, 6)
+    q, dq, ddq = sample(GRID.spline, control, GRID.times, parameters.duration)
+    loads = evaluate(FUNCTIONS['report'], q, dq, ddq, parameters)
+    g = dense(FUNCTIONS['nlp_g'](point, vector))[:, 0]
+    n_rows = GRID.n_nodes * len(NODE_ROWS)
+    np.testing.assert_allclose(g[:n_rows], loads.rows.ravel(), atol=1e-12)
+    np.testing.assert_allclose(g[n_rows : n_rows + q.size], q.ravel(), atol=1e-12)
+    hands = g[n_rows + q.size : n_rows + q.size + 4].reshape(2, 2) * HAND_SCALE
+    np.testing.assert_allclose(hands, loads.centres[[0, -1], -1], atol=1e-12)
+    np.testing.assert_allclose(g[-6:], q[GRID.n_nodes // 2], atol=1e-12)
+    simpson = np.array([1, 4, 2, 4, 2, 4, 1]) / 18.0
+    effort = parameters.duration * simpson @ loads.effort
+    assert float(FUNCTIONS['nlp_f'](point, vector)) == pytest.approx(effort, rel=1e-12)
+
+
+def test_bounds_have_the_order_of_the_row_names() -> None:
+    angle = np.arange(6.0)
+    posture = np.stack([angle - 0.1, angle, angle + 0.1])
+    bounds = LiftBounds(-angle - 1, angle + 1, posture - 1, posture + 1, np.ones((2, 2)))
+    lower, upper = bounds.rows(GRID)
+    assert len(lower) == len(upper) == len(GRID.row_names)
+    at = GRID.row_names.index('posture (4.8) of hip_flexion at 50 % of the lift')
+    assert (lower[at], upper[at]) == (2.0, 4.0)
+    at = GRID.row_names.index('hand position (4.6) up at the end [cm]')
+    assert lower[at] == upper[at] == 1.0 / HAND_SCALE
+    at = GRID.row_names.index('joint torque limit (4.2) of arm_flex at 50 % of the lift')
+    assert (lower[at], upper[at]) == (0.0, 1.0)
+    at = GRID.row_names.index('joint angle limit (4.1) of ankle_angle at 100 % of the lift')
+    assert (lower[at], upper[at]) == (-6.0, 6.0)
+
+
+def test_margin_tightens_node_rows() -> None:
+    angle = np.ones(6)
+    posture = np.zeros((3, 6))
+    margin = np.zeros((2, GRID.n_nodes, len(NODE_ROWS) + 6))
+    margin[0, 2, 1], margin[1, 2, 1], margin[1, 0, -1] = 0.1, 0.2, 0.3
+    bounds = LiftBounds(-angle, angle, posture - 1, posture + 1, np.ones((2, 2)), margin)
+    lower, upper = bounds.rows(GRID)
+    row = 2 * len(NODE_ROWS) + 1
+    assert (lower[row], upper[row]) == (0.1, 0.8)
+    assert upper[GRID.n_nodes * len(NODE_ROWS) + 5] == pytest.approx(0.7)
