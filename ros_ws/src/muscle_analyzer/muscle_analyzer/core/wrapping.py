@@ -31,7 +31,7 @@ Array = NDArray[np.float64]
 INSIDE, MISSED, POSSIBLE, PIERCED = -1, 0, 1, 2
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
 def _apex_heights(
     first: Array, second: Array, radius: float, far: bool, tangents: tuple[float, float, float, float]
 ) -> tuple[float, float]:
@@ -70,7 +70,7 @@ def _apex_heights(
     return low, high
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
 def _cylinder_sense(
     angles: tuple[float, float, float, float], radius: float, axis: int, sign: int
 ) -> int:
@@ -100,7 +100,7 @@ def _cylinder_sense(
     return 1 if left < right else -1
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
 def wrap_cylinder(
     first: Array,
     second: Array,
