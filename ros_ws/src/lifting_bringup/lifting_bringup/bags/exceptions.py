@@ -57,3 +57,7 @@ class MessageTypeError(BagError):
 
 class PlaybackError(BagError):
     """A bag cannot be played, e.g. expected subscribers never came."""
+
+
+class StaticTrialError(BagError):
+    """A static trial cannot serve for the calibration of the markers."""

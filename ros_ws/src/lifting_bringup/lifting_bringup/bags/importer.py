@@ -24,7 +24,7 @@ from lifting_bringup.bags.exceptions import BagError, FileFormatError, SubjectFi
 from lifting_bringup.bags.messages import MarkerCalibration, subject_message, task_message
 from lifting_bringup.bags.opensim_forces import read_trc_and_forces
 from lifting_bringup.bags.recording import SIDES, Analog, Array, Plate, RawRecording, Recording
-from lifting_bringup.bags.static_trial import calibrate
+from lifting_bringup.bags.static_trial import calibrate_markers
 from lifting_bringup.bags.subject_file import SubjectFile, TaskEntry, read_subject_file
 
 _EMG_BLOCK_SECONDS = 0.01
@@ -151,7 +151,7 @@ def import_recording(options: ImportOptions) -> ImportReport:
             options.conventions,
             entry.recording.roles,
         )
-        calibration, said = calibrate(trial, entry)
+        calibration, said = calibrate_markers(trial, entry)
     recording = replace(recording, statements=(*recording.statements, *said))
     return write_bag(options, entry, recording, calibration)
 

@@ -27,7 +27,7 @@ def interface_folder() -> Path:
     if beside.is_dir():
         return beside
     try:
-        from ament_index_python.packages import (  # noqa: PLC0415 - optional without ROS
+        from ament_index_python.packages import (
             PackageNotFoundError,
             get_package_share_directory,
         )

@@ -4,22 +4,74 @@
 
 from __future__ import annotations
 
-from lifting_bringup.bags.exceptions import SubjectFileError
+from human_model.errors import HumanModelError
+from human_model.subject import Subject
+from lifting_bringup.bags.exceptions import StaticTrialError, SubjectFileError
 from lifting_bringup.bags.messages import MarkerCalibration
 from lifting_bringup.bags.recording import Recording
 from lifting_bringup.bags.subject_file import SubjectFile
+from motion_tracker.core.calibration import calibrate
+from motion_tracker.core.errors import MotionTrackerError
+from motion_tracker.core.marker_set import load_marker_set
+
+_SEX = {1: 'male', 2: 'female'}
 
 
-def calibrate(trial: Recording, entry: SubjectFile) -> tuple[MarkerCalibration, tuple[str, ...]]:
-    """Return the calibration, segment lengths [m] and statements for the report.
+def calibrate_markers(
+    trial: Recording, entry: SubjectFile
+) -> tuple[MarkerCalibration, tuple[str, ...]]:
+    """Return the calibration and the statements for the report.
+
+    Parameters
+    ----------
+    trial : Recording
+        Quiet standing, in the graph's conventions.
+    entry : SubjectFile
+        Who, and which marker set.
 
     Raises
     ------
     SubjectFileError
         No marker set is named.
+    StaticTrialError
+        The trial cannot be used; says why.
     """
-    if not entry.recording.marker_set:
+    name = entry.recording.marker_set
+    if not name:
         raise SubjectFileError(
             f'{entry.path}: recording.marker_set: is missing, but a static trial is given'
         )
-    raise NotImplementedError
+    who = entry.subject
+    try:
+        marker_set = load_marker_set(name)
+        subject = Subject(
+            who.pseudonym,
+            _SEX[who.sex],
+            who.mass,
+            who.stature,
+            who.age,
+            who.strength_z,
+            dict(who.segment_lengths),
+        )
+        known = [i for i, marker in enumerate(trial.names) if marker in marker_set.names]
+        found = calibrate(
+            marker_set, [trial.names[i] for i in known], trial.markers[:, known], subject
+        )
+    except (MotionTrackerError, HumanModelError) as error:
+        raise StaticTrialError(f'{trial.path}: {error}') from error
+    left_out = sorted(set(trial.names) - {trial.names[i] for i in known})
+    said = [f'Static trial {trial.path.name}: {text}' for text in found.statements]
+    if left_out:
+        said.append(f'Static trial {trial.path.name}: not in {name}: {", ".join(left_out)}.')
+    result = found.calibration
+    return (
+        MarkerCalibration(
+            marker_set=name,
+            marker_names=result.marker_names,
+            segments=result.segments,
+            offsets=result.local_offsets,
+            rms=result.residual_rms,
+            segment_lengths=result.lengths,
+        ),
+        tuple(said),
+    )
