@@ -253,6 +253,21 @@ def test_a_known_alarm_is_not_announced_by_the_next_process(tmp_path, monkeypatc
             station.close()
 
 
+def test_node_can_be_cleaned_up_and_configured_again(station):
+    station.bring_up()
+    assert station.transition(Transition.TRANSITION_DEACTIVATE)
+    station.live(10.0, [7000.0] * 50)
+    station.until(lambda: station.node.counts['spine_load'] == 5, 'samples while not active')
+    assert station.transition(Transition.TRANSITION_CLEANUP)
+    assert station.transition(Transition.TRANSITION_CONFIGURE)
+    assert station.transition(Transition.TRANSITION_ACTIVATE)
+    # Person and task are latched: the new subscriptions get them again.
+    station.until(lambda: station.node.monitor.work is not None, 'configuration')
+    assert station.alarms == []
+    station.live(20.0, [7000.0] * 50)
+    station.until(lambda: len(station.alarms) == 2, 'alarms after the second configuration')
+
+
 def test_bad_parameter_is_refused(monkeypatch):
     monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
     try:

@@ -330,6 +330,17 @@ def test_names_from_outside_cannot_break_the_page():
     parse(page)
 
 
+def test_joints_without_published_strength_have_no_limit_and_no_index():
+    plain = lift().torques.measured
+    lower, upper = plain.lower.copy(), plain.upper.copy()
+    lower[:, 0], upper[:, 0] = -np.inf, np.inf
+    lower[:, 1] = 5.0
+    odd = replace(plain, joints=('lumbar_extension', *plain.joints[1:]), lower=lower, upper=upper)
+    words = ' '.join(parse(render(report(lifts=(replace(
+        without_figures(lift()), torques=Pair(odd, Missing('none'))),)))).texts)
+    assert 'Spine (extension +)' in words and 'nan' not in words.lower().split()
+
+
 def test_wrong_shapes_are_refused_by_field():
     with pytest.raises(ReportError, match=r'Torques\.lower'):
         Torques(np.zeros(3), ('hip',), np.zeros((3, 1)), np.zeros(3), np.zeros((3, 1)))

@@ -7,6 +7,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
+from human_model.strength import LARGE
 from injury_monitor.core.torque_index import torque_index
 from lifting_bringup.report.data import JOINTS, Array, GroundForces, JointAngles, Pair, Torques
 from lifting_bringup.report.style import (
@@ -26,6 +27,11 @@ from lifting_bringup.report.style import (
 _ANGLE_TITLES = {
     'spine': 'Spine (flexion +)', 'shoulder': 'Shoulder (forward +)', 'elbow': 'Elbow (flexion +)',
     'hip': 'Hip (flexion +)', 'knee': 'Knee (flexion +)', 'ankle': 'Ankle (dorsiflexion +)'}
+_TORQUE_TITLES = {
+    'lumbar_extension': 'Spine (extension +)', 'arm_flex': 'Shoulder (forward +)',
+    'elbow_flex': 'Elbow (flexion +)', 'hip_flexion': 'Hip (flexion +)',
+    'knee_angle': 'Knee (flexion +)', 'ankle_angle': 'Ankle (dorsiflexion +)',
+    'mtp_angle': 'Toes (dorsiflexion +)'}
 _COLUMNS = 3
 
 
@@ -97,16 +103,16 @@ def joint_torques(pair: Pair[Torques], name: str) -> str:
         figure, panels = new_figure(0.7 + 2.0 * lines, lines, _COLUMNS)
         for k, joint in enumerate(joints):
             axes = panels[k]
-            axes.set_title(joint.capitalize())
+            axes.set_title(_title(joint))
             for source, torques in pair.present().items():
                 if joint not in torques.joints:
                     continue
                 column = torques.joints.index(joint)
                 x = percent(torques.time)
-                for bound in (torques.lower, torques.upper):
+                for bound, label in ((_known(torques.lower), '_'), (
+                        _known(torques.upper), f'{LABELS[source]}, dynamic strength limit')):
                     axes.plot(x, bound[:, column], color=COLOURS[source], lw=1.0, alpha=0.75,
-                              ls=(0, (1, 1.5)), label=f'{LABELS[source]}, dynamic strength limit'
-                              if bound is torques.upper else '_')
+                              ls=(0, (1, 1.5)), label=label)
                 axes.plot(x, torques.torque[:, column], color=COLOURS[source],
                           ls=DASHES[source], label=f'{LABELS[source]}, torque')
             axes.axhline(0.0, color=SOFT, lw=0.8)
@@ -125,9 +131,9 @@ def torque_indices(pair: Pair[Torques], name: str) -> str:
     with figure_style():
         figure, panels = new_figure(3.1, 1, len(present), share_y=True)
         for axes, (source, torques) in zip(panels, present.items(), strict=True):
-            index = torque_index(torques.torque, torques.lower, torques.upper)
+            index = _index(torques)
             axes.set_title(f'{LABELS[source].capitalize()} lift')
-            _index_lines(axes, torques, np.where(np.isfinite(index), index, np.nan))
+            _index_lines(axes, torques, index)
             axes.axhline(1.0, color=LIMIT, ls=(0, (6, 3)), lw=1.3)
             axes.text(99.0, 1.0, 'whole dynamic strength (index 1)', ha='right', va='bottom',
                       color=LIMIT, fontsize=8)
@@ -143,8 +149,26 @@ def _index_lines(axes: Axes, torques: Torques, index: Array) -> None:
     x = percent(torques.time)
     dashes: tuple[str | tuple[int, tuple[int, ...]], ...] = ('-', (0, (5, 2)), '-.', (0, (1, 1)))
     for k, joint in enumerate(torques.joints):
-        axes.plot(x, index[:, k], color=SERIES[k % len(SERIES)], ls=dashes[k % len(dashes)],
-                  lw=1.6, label=joint)
+        if np.any(np.isfinite(index[:, k])):
+            axes.plot(x, index[:, k], color=SERIES[k % len(SERIES)],
+                      ls=dashes[k % len(dashes)], lw=1.6, label=_title(joint).split(' (')[0])
+
+
+def _title(joint: str) -> str:
+    return _TORQUE_TITLES.get(joint, joint.replace('_', ' ').capitalize())
+
+
+def _known(bound: Array) -> Array:
+    """Return a strength limit with NaN where no strength is published for the joint."""
+    return np.where(np.abs(bound) < LARGE, bound, np.nan)
+
+
+def _index(torques: Torques) -> Array:
+    """Return the torque index; NaN without published strength or where a fit changes its sign."""
+    lower, upper = _known(torques.lower), _known(torques.upper)
+    index = torque_index(torques.torque, np.where(lower > 0.0, np.nan, lower),
+                         np.where(upper < 0.0, np.nan, upper))
+    return np.where(np.isfinite(index), index, np.nan)
 
 
 def _joints(pair: Pair[Torques]) -> list[str]:

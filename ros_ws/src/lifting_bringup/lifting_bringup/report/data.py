@@ -266,7 +266,9 @@ class Lifting:
         HM, VM, DM, AM, FM, CM.
     recommended_weight_limit, lifting_index : float
         [kg], 1.
-    limiting_multiplier, band : str
+    limiting_multiplier : str
+    band : str
+        Exposure band; '' to have it looked up from the index.
     variables : dict
         Task variables by symbol with their unit, for example ``{'H [cm]': 42.0}``; may be empty.
     """

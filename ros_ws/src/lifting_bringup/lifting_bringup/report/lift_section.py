@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+from injury_monitor.core.lifting_equation import lifting_index_band
 from lifting_bringup.report import curves, loads, stick_figures
 from lifting_bringup.report.data import CriterionRow, Header, LiftReport, Missing, Pair, Risk
 from lifting_bringup.report.html_parts import (
@@ -117,7 +118,8 @@ def _lifting_card(lift: LiftReport) -> str:
                    for name, value in zip(names, lifting.multipliers, strict=True)]
     row = [*(text(value) for value in lifting.variables.values()), *multipliers,
            amount(lifting.recommended_weight_limit, 'kg', 1),
-           f'<strong>{amount(lifting.lifting_index, digits=2)}</strong>', text(lifting.band)]
+           f'<strong>{amount(lifting.lifting_index, digits=2)}</strong>',
+           text(lifting.band or lifting_index_band(lifting.lifting_index))]
     limiting = (f'The multiplier that limits most is {text(lifting.limiting_multiplier)}. '
                 if lifting.limiting_multiplier else '')
     return (title + table(head, [row], range(len(head) - 1))
@@ -147,7 +149,8 @@ def lift_figures(lift: LiftReport, header: Header, name: str) -> str:
         _drawn('Joint torques and dynamic strength', lift.torques,
                lambda: curves.joint_torques(lift.torques, f'{name}-torques'),
                'Both lifts by the same planar model; paired joints count both limbs. Dotted: '
-               'dynamic strength at the angle and speed of that moment.'),
+               'dynamic strength at the angle and speed of that moment; none where no strength '
+               'is published.'),
         _drawn('Torque index', lift.torques,
                lambda: curves.torque_indices(lift.torques, f'{name}-index'),
                'Torque over dynamic strength in its direction (eq. 4.12 of the dissertation).'),

@@ -38,7 +38,8 @@ p { margin: 6px 0; max-width: 76ch; }
 .lead { font-size: 16.5px; }
 .note, figcaption, .source { color: var(--soft); font-size: 13px; }
 .simulated { max-width: none; background: var(--action-back); color: var(--action);
-  border: 1.5px solid var(--action); border-radius: 8px; padding: 10px 16px; margin: 14px 0; font-size: 15px; }
+  border: 1.5px solid var(--action); border-radius: 8px; padding: 10px 16px; margin: 14px 0;
+  font-size: 15px; }
 .simulated strong { letter-spacing: 0.06em; }
 .facts { display: grid; grid-template-columns: repeat(auto-fit, minmax(165px, 1fr));
   gap: 10px 22px; margin: 18px 0 6px; padding: 16px 18px; background: var(--paper);
