@@ -4,6 +4,7 @@
 
 import numpy as np
 import pytest
+
 from human_model.motion import POINTS
 from human_model.report import SolveStatus
 from human_model.skeleton_2d import Skeleton2D

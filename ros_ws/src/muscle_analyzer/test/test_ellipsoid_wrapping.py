@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+
 from muscle_analyzer.core.ellipsoid_wrapping import closest_on_ellipsoid, wrap_ellipsoid
 from muscle_analyzer.core.wrapping import INSIDE, MISSED, PIERCED
 
@@ -66,7 +67,7 @@ def test_sphere_gives_the_great_circle(ends):
     """All guides of a sphere lie in the plane of both ends and the centre: a geodesic."""
     r = 0.05
     first, second = ends
-    contact, near, far, arc, whole = wrap(first, second, (r, r, r))
+    contact, _, _, arc, whole = wrap(first, second, (r, r, r))
     assert contact == PIERCED
     from_1, from_2 = np.linalg.norm(first), np.linalg.norm(second)
     between = math.acos(np.clip(first @ second / (from_1 * from_2), -1.0, 1.0))

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from muscle_analyzer.core.muscle_curves import (
     MuscleParameters,
     active_force_length,

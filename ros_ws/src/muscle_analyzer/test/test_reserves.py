@@ -3,6 +3,7 @@
 """The table of reserves and its errors."""
 
 import pytest
+
 from muscle_analyzer.core.exceptions import OptionError
 from muscle_analyzer.core.reserves import Reserve, read_reserves
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+
 from muscle_analyzer.core.wrapping import INSIDE, MISSED, PIERCED, POSSIBLE, wrap_cylinder
 
 RADIUS = 0.03
@@ -124,7 +125,7 @@ def test_length_is_continuous_where_the_wrap_begins(values):
         end[:2] -= shift * normal
     share = -(first[:2] @ along) / (along @ along)
     assume(0.1 < share < 0.9)
-    contact, near, far, arc, whole = wrap(first, second, size=np.array([RADIUS, 9.0, 0.0]))
+    contact, near, _, arc, whole = wrap(first, second, size=np.array([RADIUS, 9.0, 0.0]))
     assert contact == PIERCED
     assert arc < 1e-4
     assert whole == pytest.approx(np.linalg.norm(second - first), abs=1e-8)

@@ -8,11 +8,11 @@ import time
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
+from numpy.typing import NDArray
+
 from human_model.frames import from_opensim, to_opensim
 from human_model.motion import SIDES, BodyMotion
 from human_model.report import SolveReport, SolveStatus
-from numpy.typing import NDArray
-
 from muscle_analyzer.core.analyzer_options import MuscleAnalyzerOptions
 from muscle_analyzer.core.inverse_dynamics import add_force
 from muscle_analyzer.core.load_solver import LoadSolution, LoadSolver
@@ -31,7 +31,20 @@ FOOT_POINTS = (('heel_r', 'mtp_r', 'toe_r'), ('heel_l', 'mtp_l', 'toe_l'))
 DISTANCE_GOAL, ANGLE_GOAL = 0.005, float(np.deg2rad(1.0))
 #: Share of the body weight above which the ground's force needs a centre of pressure.
 LOADED_SHARE = 0.05
+#: Standard acceleration of free fall [m/s^2] (CGPM 1901).
 GRAVITY = 9.80665
+#: Arrays that hang on the solution.
+SOLVED = (
+    'activation',
+    'force',
+    'torque',
+    'reserve',
+    'l5_s1_force',
+    'l5_s1_moment',
+    'net_moment_top_down',
+    'net_moment_bottom_up',
+    'pelvis_residual',
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,7 +135,7 @@ class SampleSolver:
         external = np.zeros((len(self._loads.model.body_names), 6))
         force, moment = to_opensim(motion.ground_force[k]), to_opensim(motion.free_moment[k])
         place = to_opensim(motion.cop[k])
-        loaded = np.isfinite(place).all(axis=1)
+        loaded = [bool(np.isfinite(row).all()) for row in place]
         problem = (SolveStatus.OK, '')
         for side in range(2):
             if loaded[side]:
@@ -133,7 +146,7 @@ class SampleSolver:
                     f'{SIDES[side]} foot: ground force of {np.linalg.norm(force[side]):.0f} N '
                     'without centre of pressure',
                 )
-        if not loaded.any():
+        if not any(loaded):
             problem = (SolveStatus.MUSCLE_NO_GROUND_FORCE, 'no foot is on a force plate')
         grip = to_opensim(np.array([motion.point(name)[k] for name in HANDS]))
         pull = to_opensim(motion.hand_force[k])
@@ -196,13 +209,7 @@ def _verdict(
 
 def _blank(sample: AnalysisSample, report: SolveReport) -> AnalysisSample:
     """Make everything that hangs on the solution NaN; keep the transfer's quality."""
-    empty = {
-        name: np.full_like(getattr(sample, name), np.nan)
-        for name in (
-            'activation force torque reserve l5_s1_force l5_s1_moment net_moment_top_down '
-            'net_moment_bottom_up pelvis_residual'
-        ).split()
-    }
+    empty = {name: np.full_like(getattr(sample, name), np.nan) for name in SOLVED}
     return replace(
         sample,
         **empty,

@@ -14,13 +14,13 @@ import time
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
+
 from human_model.motion import BodyMotion
 from human_model.skeleton import Skeleton
 from human_model.skeleton_2d import Skeleton2D
 from human_model.skeleton_3d import Skeleton3D
 from human_model.subject import Subject
-from numpy.typing import NDArray
-
 from muscle_analyzer.core.analysis_sample import AnalysisSample, SampleSolver
 from muscle_analyzer.core.analyzer_options import MuscleAnalyzerOptions
 from muscle_analyzer.core.disc_frame import disc_option
@@ -97,7 +97,9 @@ class MuscleAnalyzer:
             )
         return self._streams[key]
 
-    def analyze(self, motion: BodyMotion, lift_id: str = '', source: str = 'live') -> MuscleAnalysis:
+    def analyze(
+        self, motion: BodyMotion, lift_id: str = '', source: str = 'live'
+    ) -> MuscleAnalysis:
         """
         Analyse a block of one or more samples.
 

@@ -26,7 +26,7 @@ SLOPE_SHARE = 0.1
 LINE_TRIALS = 60
 
 
-@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')
 def _minimiser(pull: float, low: float, high: float) -> tuple[float, float]:
     """Minimise ``a^2 - pull a`` over [low, high]; give the minimiser and its slope."""
     free = 0.5 * pull
@@ -37,7 +37,7 @@ def _minimiser(pull: float, low: float, high: float) -> tuple[float, float]:
     return free, 0.5
 
 
-@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')
 def _columns(matrix: Array) -> tuple[NDArray[np.int64], NDArray[np.int64], Array]:
     """Give the non-zero entries of a matrix column by column (start, row, value)."""
     n_rows, n_columns = matrix.shape
@@ -62,7 +62,7 @@ def _columns(matrix: Array) -> tuple[NDArray[np.int64], NDArray[np.int64], Array
     return start, row, value
 
 
-@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')
 def _cholesky_solve(matrix: Array, vector: Array) -> bool:
     """Solve in place; the solution replaces `vector`.  False if not positive definite."""
     n = vector.size
@@ -89,14 +89,14 @@ def _cholesky_solve(matrix: Array, vector: Array) -> bool:
     return True
 
 
-@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')
 def _copy(source: Array, target: Array) -> None:
     """Copy element by element (slices cost the compiler seconds)."""
     for i in range(source.size):
         target[i] = source[i]
 
 
-@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')
 def _evaluate(
     columns: tuple[NDArray[np.int64], NDArray[np.int64], Array],
     reserve: Array,
@@ -127,7 +127,7 @@ def _evaluate(
     return worst
 
 
-@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')
 def _hessian(
     columns: tuple[NDArray[np.int64], NDArray[np.int64], Array],
     reserve: Array,
@@ -148,7 +148,7 @@ def _hessian(
                     hessian[row[k], row[other]] += scaled * value[other]
 
 
-@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')
 def solve_dual(
     matrix: Array,
     reserve: Array,

@@ -22,6 +22,8 @@ from numpy.typing import NDArray
 from muscle_analyzer.core.wrapping import INSIDE, MISSED, PIERCED
 
 Array = NDArray[np.float64]
+#: A whole number, as Python or as compiled code has it.
+Index = int | np.int64
 
 #: Cosine between segment and axis below which only the mean direction counts, and above which only
 #: the crossing of the coordinate plane does; share of the pierced length near either end in which
@@ -36,12 +38,12 @@ _RAW_NODES, _RAW_WEIGHTS = np.polynomial.legendre.leggauss(12)
 _NODES, _WEIGHTS = 0.5 * (_RAW_NODES + 1.0), 0.5 * _RAW_WEIGHTS
 
 
-@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')
 def _dot(a: Array, b: Array) -> float:
     return float(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
 
 
-@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')
 def _cross(a: Array, b: Array) -> Array:
     out = np.empty(3)
     out[0] = a[1] * b[2] - a[2] * b[1]
@@ -50,8 +52,8 @@ def _cross(a: Array, b: Array) -> Array:
     return out
 
 
-@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
-def closest_on_ellipsoid(axes: Array, point: Array, held: int, closest: Array) -> None:
+@njit(cache=True, error_model='numpy')
+def closest_on_ellipsoid(axes: Array, point: Array, held: Index, closest: Array) -> None:
     """
     Find the point of an ellipsoid closest to a point off its centre.
 
@@ -94,8 +96,8 @@ def closest_on_ellipsoid(axes: Array, point: Array, held: int, closest: Array) -
             closest[i] = 0.0 if over <= 0.0 else axes[i] * axes[i] * point[i] / over
 
 
-@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
-def _mean_direction(axes: Array, enter: Array, leave: Array, held: int, mean: Array) -> None:
+@njit(cache=True, error_model='numpy')
+def _mean_direction(axes: Array, enter: Array, leave: Array, held: Index, mean: Array) -> None:
     """Fill `mean` with the mean of the unit vectors from a chord to the closest surface."""
     sample, surface = np.empty(3), np.empty(3)
     cuts = np.zeros(5)
@@ -132,11 +134,13 @@ def _mean_direction(axes: Array, enter: Array, leave: Array, held: int, mean: Ar
             mean[i] /= length
 
 
-@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')
 def _guide(axes: Array, enter: Array, leave: Array, axis: int, sign: int, guide: Array) -> None:
     """Fill `guide` with the surface point that fixes the plane of the path."""
     # Typed integers: a literal would make the compiler specialise the functions they are given to.
-    best, none, square = np.int64(0), np.int64(-1), 0.0
+    best: Index = np.int64(0)
+    none: Index = np.int64(-1)
+    square = 0.0
     for i in range(3):
         square += (leave[i] - enter[i]) ** 2
         if abs(leave[i] - enter[i]) > abs(leave[best] - enter[best]):
@@ -172,7 +176,7 @@ def _guide(axes: Array, enter: Array, leave: Array, axis: int, sign: int, guide:
         closest_on_ellipsoid(axes, point, axis if fan == 1.0 else none, guide)
 
 
-@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')
 def wrap_ellipsoid(
     first: Array,
     second: Array,

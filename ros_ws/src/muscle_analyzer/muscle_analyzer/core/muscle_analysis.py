@@ -7,8 +7,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from human_model.report import SolveReport
 from numpy.typing import NDArray
+
+from human_model.report import SolveReport
 
 Array = NDArray[np.float64]
 

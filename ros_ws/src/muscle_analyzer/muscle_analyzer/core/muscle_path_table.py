@@ -193,7 +193,7 @@ def _driven_motions(multibody: MultibodyModel) -> list[list[set[int]]]:
     n_q = len(multibody.coordinate_names)
     driven: list[list[set[int]]] = []
     for body, parent in enumerate(tree.parent):
-        sets = [set(item) for item in driven[parent]] if parent >= 0 else [set() for _ in range(n_q)]
+        sets = [set(driven[parent][q]) if parent >= 0 else set() for q in range(n_q)]
         for motion in range(tree.first_motion[body], tree.first_motion[body + 1]):
             coordinate = tree.motion_coordinate[motion]
             if coordinate >= 0 and tree.independent[coordinate] >= 0:

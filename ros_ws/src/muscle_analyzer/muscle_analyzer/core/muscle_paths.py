@@ -52,12 +52,12 @@ class MusclePaths(NamedTuple):
     wrench: Array
 
 
-@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')
 def _distance(a: Array, b: Array) -> float:
     return math.sqrt((b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2 + (b[2] - a[2]) ** 2)
 
 
-@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')
 def _into(rotation: Array, origin: Array, point: Array, out: Array) -> None:
     """Express a ground point in a frame."""
     for i in range(3):
@@ -66,7 +66,7 @@ def _into(rotation: Array, origin: Array, point: Array, out: Array) -> None:
             out[i] += rotation[j, i] * (point[j] - origin[j])
 
 
-@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')
 def _out_of(rotation: Array, origin: Array, point: Array, out: Array) -> None:
     """Express a point of a frame in ground axes."""
     for i in range(3):
@@ -75,7 +75,7 @@ def _out_of(rotation: Array, origin: Array, point: Array, out: Array) -> None:
             out[i] += rotation[i, j] * point[j]
 
 
-@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')
 def _path_length(point: Array, owner: NDArray[np.int64], arc: Array, n: int) -> float:
     """Add up a path; two neighbours of one wrap object are joined by its arc."""
     length = 0.0
@@ -87,7 +87,7 @@ def _path_length(point: Array, owner: NDArray[np.int64], arc: Array, n: int) -> 
     return length
 
 
-@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')
 def _best_wrap(
     table: PathTable,
     use: int,
@@ -137,7 +137,7 @@ def _best_wrap(
     return found, contact, arc
 
 
-@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')
 def _move(point: Array, owner: NDArray[np.int64], arc: Array, old: int, new: int) -> None:
     """Copy one entry of a path to another place."""
     owner[new], arc[new] = owner[old], arc[old]
@@ -145,7 +145,7 @@ def _move(point: Array, owner: NDArray[np.int64], arc: Array, old: int, new: int
         point[new, i] = point[old, i]
 
 
-@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')
 def _wrap_path(
     table: PathTable,
     muscle: int,
@@ -214,7 +214,7 @@ def _wrap_path(
     return n, length
 
 
-@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')
 def muscle_paths(
     table: PathTable, body_position: Array, body_rotation: Array, jacobian: Array
 ) -> MusclePaths:
@@ -287,7 +287,7 @@ def muscle_paths(
     return MusclePaths(length, moment_arm, wrench)
 
 
-@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')
 def _body(table: PathTable, muscle: int, owner: int) -> int:
     """Give the body that carries a point of a path."""
     if owner < 0:
@@ -295,7 +295,7 @@ def _body(table: PathTable, muscle: int, owner: int) -> int:
     return int(table.point_body[table.point_start[muscle] + owner])
 
 
-@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')
 def body_wrenches(table: PathTable, wrench: Array, force: Array, n_bodies: int) -> Array:
     """
     Sum what muscles of given forces exert on the bodies.

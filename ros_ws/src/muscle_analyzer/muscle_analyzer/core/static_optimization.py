@@ -14,9 +14,9 @@ import time
 from dataclasses import dataclass
 
 import numpy as np
-from human_model.report import SolveReport, SolveStatus
 from numpy.typing import NDArray
 
+from human_model.report import SolveReport, SolveStatus
 from muscle_analyzer.core.dual_newton import solve_dual
 from muscle_analyzer.core.exceptions import InputArrayError, OptionError
 from muscle_analyzer.core.reserves import Reserve

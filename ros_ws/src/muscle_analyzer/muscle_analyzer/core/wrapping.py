@@ -31,9 +31,13 @@ Array = NDArray[np.float64]
 INSIDE, MISSED, POSSIBLE, PIERCED = -1, 0, 1, 2
 
 
-@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')
 def _apex_heights(
-    first: Array, second: Array, radius: float, far: bool, tangents: tuple[float, float, float, float]
+    first: Array,
+    second: Array,
+    radius: float,
+    far: bool,
+    tangents: tuple[float, float, float, float],
 ) -> tuple[float, float]:
     """
     Give the heights of the tangent points in the plane of both ends and the apex.
@@ -70,7 +74,7 @@ def _apex_heights(
     return low, high
 
 
-@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')
 def _cylinder_sense(
     angles: tuple[float, float, float, float], radius: float, axis: int, sign: int
 ) -> int:
@@ -100,7 +104,7 @@ def _cylinder_sense(
     return 1 if left < right else -1
 
 
-@njit(cache=True, error_model='numpy')  # type: ignore[untyped-decorator]
+@njit(cache=True, error_model='numpy')
 def wrap_cylinder(
     first: Array,
     second: Array,

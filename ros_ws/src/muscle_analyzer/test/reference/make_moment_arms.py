@@ -31,6 +31,19 @@ SEED, POSTURES = 20261122, 12
 #: Range used for a coordinate of the pelvis (rad or m), which moves no muscle.
 PELVIS_RANGE = (-0.3, 0.3)
 
+#: What is stored of each muscle's fibres, in this order.
+FIBRE_KEYS = (
+    'path_length',
+    'path_velocity',
+    'fibre_length',
+    'pennation',
+    'fibre_velocity',
+    'optimal_fibre_length',
+    'tendon_slack_length',
+    'pennation_at_optimal',
+    'max_velocity',
+)
+
 
 def coupled(model: opensim.Model) -> dict[str, tuple[str, opensim.Function]]:
     """Give, for each dependent coordinate, the one that drives it and the function."""
@@ -145,11 +158,7 @@ def rigid_tendon_samples(
                 muscle.getMaxContractionVelocity(),
             )
         )
-    keys = (
-        'path_length path_velocity fibre_length pennation fibre_velocity optimal_fibre_length '
-        'tendon_slack_length pennation_at_optimal max_velocity'
-    ).split()
-    return dict(zip(keys, np.array(rows).T, strict=True))
+    return dict(zip(FIBRE_KEYS, np.array(rows).T, strict=True))
 
 
 def main() -> None:
