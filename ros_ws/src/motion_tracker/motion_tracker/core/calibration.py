@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Marker calibration from a static trial: measured lengths, posture, marker offsets.
 
-The person stands upright with both feet flat. (1) Joint centres follow from landmarks, segment
+The person stands upright, trunk and wrists straight, both feet flat: that defines the zero of the
+spine's, the wrists' and the toes' angles, which no landmark gives as well. (1) Joint centres follow from landmarks, segment
 lengths from joint centres; the heights of the trunk's joints keep the proportions of the
 anthropometric tables. (2) The posture is fitted to the joint centres and to the landmarks that
 have a place in the marker set; the height of the foot's landmarks over the ankle is not fitted,
@@ -35,12 +36,24 @@ Array = npt.NDArray[np.float64]
 #: Weight of a joint centre in the fit of the posture, against 1 or 2 of a landmark.
 CENTRE_WEIGHT = 10.0
 
+#: The same of the ankles: the feet stand where they stand, what does not fit must show higher up.
+ANKLE_WEIGHT = 1000.0
+
+#: Coordinates that are zero in the static trial, and the weight that holds them there [m^2/rad^2].
+STRAIGHT = ('lumbar_extension', 'lumbar_bending', 'lumbar_rotation', 'thorax_extension',
+            'thorax_bending', 'thorax_rotation', 'wrist_flex_r', 'wrist_dev_r', 'wrist_flex_l',
+            'wrist_dev_l', 'mtp_angle_r', 'mtp_angle_l')
+STRAIGHT_WEIGHT = 10.0
+
 #: A static trial whose markers move more than this (standard deviation) is not static [m].
 LARGEST_SWAY = 0.02
 
 #: The trunk's lengths, which are scaled together.
 _TRUNK = ('l5s1_forward', 'l5s1_height', 't12l1_forward', 't12l1_height', 'shoulder_forward',
           'shoulder_height', 'c7_forward', 'c7_height')
+
+#: Marker on the spinous process of C7, in all sets; its height gives that of the neck's joint.
+_NECK = 'C7'
 
 #: Frames of the static trial the calibrated model is tried on.
 _CHECKED_FRAMES = 20
@@ -112,11 +125,11 @@ def calibrate(marker_set: MarkerSet, names: Sequence[str], positions: npt.ArrayL
     lengths, centres = _measure(marker_set, definitions, known, person)
     skeleton = Skeleton3D.of(replace(person, lengths={**lengths, **subject.lengths}))
     posture, rms, worst = _posture(marker_set, skeleton, known, centres)
+    if _NECK in known and 'c7_height' not in subject.lengths:
+        lengths['c7_height'] = float(_local(skeleton, posture, 'thorax', known[_NECK])[2])
+        skeleton = Skeleton3D.of(replace(person, lengths={**lengths, **subject.lengths}))
     tracked = [m for m in marker_set.markers if m.tracking and m.name in known]
-    frames = skeleton.forward(posture)
-    offsets = np.array([
-        frames[skeleton.segments.index(m.segment), :3, :3].T
-        @ (known[m.name] - frames[skeleton.segments.index(m.segment), :3, 3]) for m in tracked])
+    offsets = np.array([_local(skeleton, posture, m.segment, known[m.name]) for m in tracked])
     draft = Calibration(tuple(m.name for m in tracked), tuple(m.segment for m in tracked), offsets,
                         lengths)
     residual = _residual(skeleton, draft, marker_set, names, array, posture)
@@ -127,6 +140,12 @@ def calibrate(marker_set: MarkerSet, names: Sequence[str], positions: npt.ArrayL
                       f'{1000 * residual:.1f} mm rms')
     return StaticCalibration(replace(draft, residual_rms=residual), posture, rms, worst, centres,
                              tuple(statements))
+
+
+def _local(skeleton: Skeleton3D, posture: Array, segment: str, point: Array) -> Array:
+    """World point (3,) [m] in a segment's anatomical frame."""
+    frame = skeleton.forward(posture)[skeleton.segments.index(segment)]
+    return np.asarray(frame[:3, :3].T @ (point - frame[:3, 3]))
 
 
 def _mean_positions(names: Sequence[str], array: Array) -> dict[str, Array]:
@@ -200,7 +219,8 @@ def _posture(marker_set: MarkerSet, skeleton: Skeleton3D, markers: Mapping[str, 
         tuple(joints) + tuple(m.name for m in landmarks),
         tuple(SEGMENT_OF_JOINT[j] for j in joints) + tuple(m.segment for m in landmarks),
         np.array([np.zeros(3)] * len(joints) + [placed[m.name] for m in landmarks]),
-        np.array([CENTRE_WEIGHT] * len(joints) + [m.weight for m in landmarks]))
+        np.array([ANKLE_WEIGHT if j.startswith('ankle') else CENTRE_WEIGHT for j in joints]
+                 + [m.weight for m in landmarks]))
     target = np.array([centres[j] for j in joints] + [markers[m.name] for m in landmarks])
     flat = skeleton.parameters.lengths
     for i, m in enumerate(landmarks, len(joints)):
@@ -208,7 +228,8 @@ def _posture(marker_set: MarkerSet, skeleton: Skeleton3D, markers: Mapping[str, 
             below = 0.0 if m.segment.startswith('foot') else flat['mtp_drop']
             target[i, 2] = centres[f'ankle_{m.segment[-1]}'][2] + placed[m.name][2] - below
     loose = IKSettings(max_residual=np.inf, rms_residual=np.inf, max_iterations=200)
-    solution = InverseKinematics(skeleton, model, loose).solve(target)
+    solver = InverseKinematics(skeleton, model, loose, dict.fromkeys(STRAIGHT, STRAIGHT_WEIGHT))
+    solution = solver.solve(target)
     if not solution.ok:
         raise CalibrationError(f'static trial: the posture could not be fitted: '
                                f'{solution.message}')

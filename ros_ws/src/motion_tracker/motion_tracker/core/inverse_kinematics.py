@@ -14,6 +14,7 @@ curvature (a marker 0.1 m off the axis counts 0.01 m^2 per unit weight):
 """
 
 import csv
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 
@@ -132,6 +133,9 @@ class InverseKinematics:
         Where the markers sit.
     settings
         Weights and limits.
+    neutral
+        Weights [m^2/rad^2] that draw single coordinates to the neutral posture, in place of
+        ``neutral_weight``.
 
     Raises
     ------
@@ -140,7 +144,8 @@ class InverseKinematics:
     """
 
     def __init__(self, skeleton: Skeleton, model: MarkerModel,
-                 settings: IKSettings | None = None) -> None:
+                 settings: IKSettings | None = None,
+                 neutral: Mapping[str, float] | None = None) -> None:
         self.skeleton = skeleton
         self.model = model
         self.settings = settings or IKSettings()
@@ -152,6 +157,8 @@ class InverseKinematics:
         self._upper = np.ascontiguousarray(skeleton.limits[:, 1])
         place = np.array([name in _PLACE for name in skeleton.coordinates])
         self._neutral = np.where(place, 0.0, self.settings.neutral_weight)
+        for name, weight in (neutral or {}).items():
+            self._neutral[skeleton.index(name)] = weight
         self._place = place
         prior = [(skeleton.index(a), skeleton.index(b), share) for a, b, share in spine_prior()]
         self._pair = np.array([[a, b] for a, b, _ in prior], dtype=np.int64)

@@ -193,7 +193,7 @@ class LiftEventDetector:
         self._number += 1
         self._top = at
         when, value = self._start_instant()
-        return [LiftEvent(LiftPhase.START, self._number, when, value, self._time[-1] - when)]
+        return [self._event(LiftPhase.START, when, value)]
 
     def _look_for_end(self, at: int) -> list[LiftEvent]:
         if self._smooth[at] > self._smooth[self._top]:
@@ -208,7 +208,11 @@ class LiftEventDetector:
         when, value = self._end_instant()
         self._rising = False
         self._base = -1
-        return LiftEvent(LiftPhase.END, self._number, when, value, self._time[-1] - when)
+        return self._event(LiftPhase.END, when, value)
+
+    def _event(self, phase: LiftPhase, when: float, value: float) -> LiftEvent:
+        return LiftEvent(phase, self._number, float(when), float(value),
+                         float(self._time[-1] - when))
 
     def _parabola(self, at: int) -> tuple[float, float]:
         """Height [m] and speed [m/s] at one sample by a least-squares parabola round it."""
