@@ -5,6 +5,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -13,11 +15,14 @@ from human_model.motion import Lift
 from human_model.report import SolveReport
 from human_model.subject import Subject
 from lift_predictor.core.bspline import RestToRestSpline
+from lift_predictor.core.comparison import LiftComparison
 from lift_predictor.core.evaluation import evaluate, sample
 from lift_predictor.core.kinematics import pelvis_motion, reach
 from lift_predictor.core.node_functions import node_functions
 from lift_predictor.core.parameters import JOINTS, LiftParameters
 from lift_predictor.core.person import Person
+from lift_predictor.core.prediction import PredictedLift2D
+from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.task import Box
 
 BOX_DEPTH, BOX_HEIGHT = 0.238, 0.127
@@ -25,6 +30,15 @@ BOX_GAP, SHELF_GAP, SHELF_HEIGHT = 0.033, 0.305, 0.9
 DURATION = 1.2
 
 MakeLift = Callable[..., Lift]
+
+
+class Outcome(NamedTuple):
+    """One lift and what was made of it."""
+
+    lift: Lift
+    box: Box
+    predicted: PredictedLift2D
+    comparison: LiftComparison | None
 
 
 @pytest.fixture(scope='session')
@@ -46,7 +60,9 @@ def parameters(person: Person) -> LiftParameters:
 @pytest.fixture(scope='session')
 def make_lift(person: Person) -> MakeLift:
     """Return a function that makes a recorded lift on the 2D skeleton."""
+    report = node_functions()['report']
 
+    @cache
     def make(
         mass: float, shelf_gap: float = SHELF_GAP, shelf_height: float = SHELF_HEIGHT
     ) -> Lift:
@@ -64,15 +80,10 @@ def make_lift(person: Person) -> MakeLift:
         )
         time = np.linspace(0.0, DURATION, round(100 * DURATION) + 1)
         q, dq, ddq = sample(spline, control, time / DURATION, DURATION)
-        loads = evaluate(node_functions()['report'], q, dq, ddq, parameters)
+        loads = evaluate(report, q, dq, ddq, parameters)
         return recorded_lift(person, parameters, time, (q, dq, ddq), loads)
 
     return make
-
-
-@pytest.fixture(scope='session')
-def make_box() -> Callable[[float], Box]:
-    return lambda mass: Box(mass=mass, depth=BOX_DEPTH if mass > 0.0 else 0.0)
 
 
 def lift_parameters(person: Person, mass: float) -> LiftParameters:
@@ -119,3 +130,24 @@ def recorded_lift(person, parameters, time, coordinates, loads) -> Lift:
     return Lift(
         'lift_001', 'measured', 0.0, float(time[-1]), parameters.box_mass, motion, SolveReport()
     )
+
+
+@pytest.fixture(scope='session')
+def predictor(subject: Subject) -> LiftPredictor:
+    """Predictor of the dissertation's subject, with the functions of the user's cache."""
+    predictor = LiftPredictor()
+    predictor.configure(subject)
+    return predictor
+
+
+@pytest.fixture(scope='session')
+def outcome(predictor: LiftPredictor, make_lift: MakeLift) -> Callable[[float], Outcome]:
+    """Return a function that predicts (once per mass) the lift of a mass [kg]."""
+
+    @cache
+    def solve(mass: float) -> Outcome:
+        lift, box = make_lift(mass), Box(mass=mass, depth=BOX_DEPTH if mass > 0.0 else 0.0)
+        predicted, comparison = predictor.predict_and_compare(lift, box)
+        return Outcome(lift, box, predicted, comparison)
+
+    return solve

@@ -65,7 +65,7 @@ def test_refuses_too_few_control_points(n_control: int) -> None:
 
 @pytest.mark.parametrize('n_nodes', [5, 8, 24, 26])
 def test_refuses_too_few_or_unaligned_nodes(n_nodes: int) -> None:
-    """Fewer than 2 (m - 3) + 1 nodes let the optimiser cheat; Simpson's panels must end at knots."""
+    """Fewer than 2 (m - 3) + 1 nodes let the optimiser cheat; Simpson panels end at knots."""
     with pytest.raises(SplineError, match=f'n_nodes = {n_nodes}'):
         Grid(7, n_nodes)
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""The chain from the feet against the skeleton of human_model, and against the balance of power."""
+"""The chain from the feet against the skeleton of human_model, and the balance of power."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+
 from human_model.skeleton import ExternalForce
 from human_model.strength import JointStrength
 from human_model.subject import Subject
-
 from lift_predictor.core.evaluation import SagittalLoads, evaluate
 from lift_predictor.core.kinematics import chain_positions, pelvis_motion
 from lift_predictor.core.node_functions import CENTRES, NODE_ROWS, node_functions
@@ -179,6 +179,4 @@ def test_pelvis_motion_against_finite_differences(parameters: LiftParameters, mo
 
     _, velocity, acceleration = pelvis_motion(q, dq, ddq, parameters)
     np.testing.assert_allclose(velocity, (at(h) - at(-h)) / (2.0 * h), atol=1e-6)
-    np.testing.assert_allclose(
-        acceleration, (at(h) - 2.0 * at(0.0) + at(-h)) / h**2, atol=2e-5
-    )
+    np.testing.assert_allclose(acceleration, (at(h) - 2.0 * at(0.0) + at(-h)) / h**2, atol=2e-5)

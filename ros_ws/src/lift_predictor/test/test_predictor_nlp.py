@@ -38,7 +38,9 @@ def test_gradient(point: np.ndarray, vector: np.ndarray) -> None:
     h = 1e-6
     for i in range(GRID.n_variables):
         step = h * np.eye(GRID.n_variables)[i]
-        change = FUNCTIONS['nlp_f'](point + step, vector) - FUNCTIONS['nlp_f'](point - step, vector)
+        change = FUNCTIONS['nlp_f'](point + step, vector) - FUNCTIONS['nlp_f'](
+            point - step, vector
+        )
         assert float(gradient[i]) == pytest.approx(float(change) / (2 * h), rel=1e-5, abs=1e-5)
 
 

@@ -14,10 +14,10 @@ from lift_predictor.core.parameters import BODIES, CIRCLE_BODIES, CIRCLES_PER_BO
 
 Array = NDArray[np.float64]
 
-_CLEARANCE_WEIGHT = 1.0
-_BALANCE_WEIGHT = 1.0
+REACHED = 1e-4
+"""Distance of the grip from its target that counts as reached [m]."""
 _POSTURE_WEIGHT = 1e-3
-"""Weights against the distance of the grip [m]: the grip comes first, the posture breaks ties."""
+"""Weight of the distance from the reference posture [m/rad]: it only breaks ties."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ def reach(
 ) -> tuple[Array, float]:
     """Find the posture that brings the grip nearest to a point.
 
-    Among those that do, it is clear of the box, balanced, and near a reference.
+    If it can be reached so, the posture is clear of the box, balanced, and near a reference.
 
     Parameters
     ----------
@@ -124,25 +124,25 @@ def reach(
     """
     rear, front = parameters.support
 
-    def residual(q: Array) -> Array:
+    def residual(q: Array, secondary: float) -> Array:
         state = chain_positions(q, parameters)
-        return np.concatenate(
-            (
-                state.joints['hand'][0] - grip,
-                _CLEARANCE_WEIGHT * np.minimum(state.gaps[0], 0.0),
-                _BALANCE_WEIGHT
-                * np.maximum(
-                    (0.0, 0.0), (rear - state.centre_of_mass[0], state.centre_of_mass[0] - front)
-                ),
-                _POSTURE_WEIGHT * (q - reference),
-            )
-        )
+        forward = float(state.centre_of_mass[0])
+        unbalanced = max(rear - forward, forward - front, 0.0)
+        wishes = np.append(np.minimum(state.gaps[0], 0.0), unbalanced)
+        apart = state.joints['hand'][0] - grip
+        return np.concatenate((apart, secondary * wishes, _POSTURE_WEIGHT * (q - reference)))
 
-    start = np.clip(reference, lower, upper)
-    solution = least_squares(residual, start, bounds=(lower - 1e-9, upper + 1e-9), xtol=1e-10)
-    posture = np.clip(solution.x, lower, upper)
-    hand = chain_positions(posture, parameters).joints['hand'][0]
-    return posture, float(np.linalg.norm(hand - grip))
+    posture, distance = np.clip(reference, lower, upper), np.inf
+    for secondary in (1.0, 0.0):
+        solution = least_squares(
+            residual, posture, bounds=(lower - 1e-9, upper + 1e-9), xtol=1e-10, args=(secondary,)
+        )
+        posture = np.clip(solution.x, lower, upper)
+        hand = chain_positions(posture, parameters).joints['hand'][0]
+        distance = float(np.linalg.norm(hand - grip))
+        if distance <= REACHED:
+            break
+    return posture, distance
 
 
 def pelvis_motion(

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from human_model.motion import BodyMotion, Lift
 from lift_predictor.core.exceptions import AsymmetricLiftError, TaskError, UnreachableError
-from lift_predictor.core.kinematics import chain_positions, reach
+from lift_predictor.core.kinematics import REACHED, chain_positions, reach
 from lift_predictor.core.nlp import LiftBounds
 from lift_predictor.core.parameters import JOINTS, LiftParameters
 from lift_predictor.core.person import Person
@@ -22,8 +22,6 @@ Array = NDArray[np.float64]
 
 POSTURE_TOLERANCE: Final = 0.15
 """Epsilon of equation 4.8 [rad]."""
-REACHED: Final = 1e-4
-"""Distance of the grip from its target that counts as reached [m]."""
 INSTANTS: Final = ('start', 'middle', 'end')
 
 

@@ -1,0 +1,121 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""The cache of compiled functions, and the machine without a compiler."""
+
+from __future__ import annotations
+
+import os
+import stat
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lift_predictor.core import compiled
+from lift_predictor.core.compiled import build_programme, cache_directory, content_hash
+from lift_predictor.core.nlp import Grid
+from lift_predictor.core.parameters import LiftParameters
+
+GRID = Grid(5, 5)
+
+
+def test_cache_directory_follows_the_environment(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv('LIFT_CACHE', str(tmp_path / 'own'))
+    monkeypatch.setenv('XDG_CACHE_HOME', str(tmp_path / 'xdg'))
+    assert cache_directory() == tmp_path / 'own'
+    monkeypatch.delenv('LIFT_CACHE')
+    assert cache_directory() == tmp_path / 'xdg' / 'lift_monitor'
+    monkeypatch.delenv('XDG_CACHE_HOME')
+    monkeypatch.setenv('HOME', str(tmp_path))
+    assert cache_directory() == tmp_path / '.cache' / 'lift_monitor'
+
+
+BUILD = """
+from lift_predictor.core.compiled import build_programme
+from lift_predictor.core.nlp import Grid
+print(build_programme(Grid(5, 5)).how)
+"""
+
+
+@pytest.mark.skipif(compiled.find_compiler() is None, reason='no C compiler on this machine')
+def test_two_processes_build_one_library_with_the_numbers_of_the_virtual_machine(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, parameters: LiftParameters
+) -> None:
+    monkeypatch.setenv('LIFT_CACHE', str(tmp_path))
+    monkeypatch.setenv('PYTHONPATH', os.pathsep.join(sys.path))
+    jobs = [
+        subprocess.Popen([sys.executable, '-c', BUILD], stdout=subprocess.PIPE, text=True)
+        for _ in range(2)
+    ]
+    how = sorted(job.communicate(timeout=120)[0].strip() for job in jobs)
+    assert how[0] == 'compiled functions from the cache'
+    assert how[1].startswith('functions compiled with')
+    assert len(list(tmp_path.glob('*.so'))) == 1
+    assert not [path for path in tmp_path.iterdir() if path.is_dir()], 'scratch folder left behind'
+
+    fast = build_programme(GRID)
+    assert fast.how == 'compiled functions from the cache'
+    assert fast.library is not None
+    monkeypatch.setenv('CC', str(tmp_path / 'no-such-compiler'))
+    slow = build_programme(GRID)
+    x = np.random.default_rng(1).uniform(0.1, 0.6, GRID.n_variables)
+    for name in ('nlp_grad_f', 'nlp_jac_g'):
+        for a, b in zip(
+            fast.functions[name](x, parameters.pack()),
+            slow.functions[name](x, parameters.pack()),
+            strict=True,
+        ):
+            np.testing.assert_allclose(np.asarray(a), np.asarray(b), rtol=1e-9, atol=1e-9)
+
+
+def test_machine_without_compiler_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv('CC', '/no/such/compiler')
+    programme = build_programme(GRID)
+    assert programme.library is None
+    assert programme.how == ("functions run in CasADi's virtual machine: no C compiler was found")
+
+
+def test_compiler_that_fails_is_quoted(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    broken = tmp_path / 'broken-cc'
+    broken.write_text(
+        '#!/bin/sh\n[ "$1" = --version ] && exit 0\necho "disk quota exceeded" >&2\nexit 1\n'
+    )
+    broken.chmod(broken.stat().st_mode | stat.S_IXUSR)
+    monkeypatch.setenv('CC', str(broken))
+    monkeypatch.setenv('LIFT_CACHE', str(tmp_path / 'cache'))
+    programme = build_programme(GRID)
+    assert programme.library is None
+    assert 'compiling failed: disk quota exceeded' in programme.how
+    assert not list((tmp_path / 'cache').glob('*.so'))
+
+
+def test_cache_that_cannot_be_written_is_named(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    (tmp_path / 'file').write_text('')
+    monkeypatch.setenv('LIFT_CACHE', str(tmp_path / 'file' / 'below'))
+    if compiled.find_compiler() is None:
+        pytest.skip('no C compiler on this machine')
+    programme = build_programme(GRID)
+    assert programme.library is None
+    assert str(tmp_path / 'file') in programme.how
+
+
+def test_hash_depends_on_everything_that_goes_in(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    compiler = tmp_path / 'cc'
+    compiler.write_text('#!/bin/sh\necho one\n')
+    compiler.chmod(0o755)
+    first = content_hash(GRID, str(compiler))
+    assert content_hash(GRID, str(compiler)) == first
+    assert content_hash(Grid(5, 9), str(compiler)) != first
+    monkeypatch.setattr(compiled, 'FLAGS', ('-O0',))
+    assert content_hash(GRID, str(compiler)) != first
+    monkeypatch.undo()
+    monkeypatch.setattr(compiled, 'SOURCES', compiled.SOURCES[1:])
+    assert content_hash(GRID, str(compiler)) != first
