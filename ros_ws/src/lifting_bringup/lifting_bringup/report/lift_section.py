@@ -32,7 +32,7 @@ CRITERIA = {
     'compression_maximum': 'NIOSH maximum permissible limit',
     'shear_occasional': 'limit up to 100 loads a day',
     'shear_frequent': 'limit above 100 loads a day',
-    'torque_index': 'whole dynamic strength', 'activation_index': 'activation held'}
+    'torque_index': 'joint torque index', 'activation_index': 'activation index'}
 _NAMES = {'measured': 'recorded lift', 'predicted': 'optimal lift'}
 
 

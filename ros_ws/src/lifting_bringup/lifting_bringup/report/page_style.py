@@ -98,7 +98,13 @@ ul.plain { padding-left: 20px; max-width: 84ch; } ul.plain li { margin: 4px 0; }
   stroke-linejoin: round; }
 main { max-width: none; padding: 0; } body { font-size: 11.5px; }
   details > summary { list-style: none; }
-  h2, h3, summary { break-after: avoid; }
+  h2, h3, summary { break-after: avoid; } h2 { margin-top: 24px; }
+  .scroll { overflow: visible; } table { font-size: 9.5px; } thead th { font-size: 9px; }
+  th, td { padding: 3px 6px; } .pill { font-size: 9px; padding: 0 6px; white-space: normal; }
+  .cards { grid-template-columns: repeat(4, 1fr); gap: 8px; } .card { padding: 8px 10px; }
+  .card .value { font-size: 18px; } .card .value small { font-size: 10px; }
+  .card ul, .card .verdict { font-size: 9.5px; } .card .what { font-size: 9.5px; }
+  .note, figcaption, .source { font-size: 10px; }
 }
 @page { size: A4; margin: 14mm; }
 """
