@@ -62,6 +62,15 @@ class PiecewisePolynomial:
             float(polynomial.deriv(2)(dx)),
         )
 
+    def is_line(self) -> bool:
+        """Tell whether the function is a straight line that is not level."""
+        return (
+            self.anchors.size == 1
+            and self.coefficients.shape[1] > 1
+            and self.coefficients[0, 1] != 0.0
+            and not np.any(self.coefficients[0, 2:])
+        )
+
     def is_constant(self) -> bool:
         """Tell whether the function has the same value everywhere."""
         return self.anchors.size == 1 and not np.any(self.coefficients[0, 1:])

@@ -30,6 +30,7 @@ from muscle_analyzer.core.osim_model import (
     Muscle,
     OsimModel,
     PathPoint,
+    TransformAxis,
     WrapObject,
 )
 
@@ -138,25 +139,23 @@ def _scale_frame(frame: Frame, factor: Array) -> Frame:
 def _scale_joint(joint: Joint, by_body: Mapping[str, Array]) -> Joint:
     """Stretch both frames, and the translations by the parent's factors along their axes."""
     factor = by_body[joint.parent.body]
-    if joint.parent.body == GROUND:
-        translations = joint.translations
-    else:
-        first, second, third = (
-            replace(
-                axis,
-                function=axis.function.scaled(
-                    float(np.linalg.norm(factor * (joint.parent.rotation @ axis.axis)))
-                ),
-            )
-            for axis in joint.translations
-        )
-        translations = (first, second, third)
+    first, second, third = (
+        _scale_translation(axis, factor * (joint.parent.rotation @ axis.axis))
+        for axis in joint.translations
+    )
     return replace(
         joint,
         parent=_scale_frame(joint.parent, factor),
         child=_scale_frame(joint.child, by_body[joint.child.body]),
-        translations=translations,
+        translations=(first, second, third),
     )
+
+
+def _scale_translation(axis: TransformAxis, stretched: Array) -> TransformAxis:
+    """Stretch a translation, unless it is a line in its coordinate: that is a length already."""
+    if axis.function.is_line():
+        return axis
+    return replace(axis, function=axis.function.scaled(float(np.linalg.norm(stretched))))
 
 
 def _scale_wrap(wrap: WrapObject, factor: Array) -> WrapObject:
