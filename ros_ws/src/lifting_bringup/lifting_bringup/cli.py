@@ -57,6 +57,12 @@ def _parser() -> argparse.ArgumentParser:
     play.add_argument('--start', type=float, default=0.0, help='offset [s]')
     play.add_argument('--station', default='', help='namespace of all topics')
     play.add_argument('--start-paused', action='store_true', help='wait for ~/pause false')
+    play.add_argument(
+        '--wait-for', nargs='+', default=(), metavar='TOPIC', help='wait for a subscriber of each'
+    )
+    play.add_argument(
+        '--wait-timeout', type=float, default=20.0, help='how long to wait for them [s]'
+    )
     play.set_defaults(handler=_play)
 
     record = commands.add_parser('record', help='record running topics to MCAP')
@@ -130,6 +136,8 @@ def _play(options: argparse.Namespace) -> int:
             start=options.start,
             namespace=options.station,
             start_paused=options.start_paused,
+            wait_for=dict.fromkeys(options.wait_for, 1),
+            wait_timeout=options.wait_timeout,
         ),
         control,
         print,

@@ -44,7 +44,11 @@ RESULT_TOPICS = (
     'alarms',
 )
 
-#: Topics in that list that a graph may offer once a frame; the rest comes once a lift.
+PLATES = ('force_plates/right/wrench', 'force_plates/left/wrench')
+#: Topics the motion tracker reads.
+INPUTS = ('markers', 'box/pose', *PLATES)
+
+#: Topics of the results that a graph may offer once a frame; the rest comes once a lift.
 _QOS = {
     'subject': qos.LATCHED,
     'task': qos.LATCHED,
@@ -104,11 +108,21 @@ class RunReport:
 
 @dataclass(frozen=True)
 class BagSummary:
-    """Start [s], duration [s] and loads per day of a recording."""
+    """Start [s], duration [s], loads per day and input topics of a recording."""
 
     start: float
     duration: float
     lifts_per_day: float
+    inputs: tuple[str, ...]
+
+    @property
+    def stream_wait(self) -> float:
+        """How far the tracker may let the markers run ahead of plates and box [s of stamps].
+
+        A stream that the recording has will come, however fast the recording is played.
+        """
+        complete = set(PLATES) <= set(self.inputs)
+        return 3600.0 if complete else 10.0
 
 
 def summarise(path: Path) -> BagSummary:
@@ -120,6 +134,7 @@ def summarise(path: Path) -> BagSummary:
             start=bag.start_ns * 1e-9,
             duration=(bag.end_ns - bag.start_ns) * 1e-9,
             lifts_per_day=per_day[-1] if per_day else 0.0,
+            inputs=tuple(name.strip('/') for name in bag.topics if name.strip('/') in INPUTS),
         )
 
 
@@ -143,10 +158,11 @@ def run_online(options: RunOptions, say: Callable[[str], None] = print) -> RunRe
     executor = EventsExecutor()
     executor.add_node(node)
     helpers: list[NodeProcess] = []
-    graph = Graph(node, executor, options.station, logs)
+    parameters = {'motion_tracker': {'wait': summary.stream_wait}}
+    graph = Graph(node, executor, options.station, logs, parameters)
     try:
         graph.start()
-        helpers += _start_helpers(options, logs)
+        helpers += _start_helpers(options, logs, summary)
         recorder, player = helpers
         say('starting the graph: muscle_analyzer, lift_predictor, motion_tracker, injury_monitor')
         graph.bring_up()
@@ -167,7 +183,9 @@ def run_online(options: RunOptions, say: Callable[[str], None] = print) -> RunRe
         rclpy.try_shutdown()
 
 
-def _start_helpers(options: RunOptions, logs: Path) -> list[NodeProcess]:
+def _start_helpers(
+    options: RunOptions, logs: Path, summary: BagSummary
+) -> list[NodeProcess]:
     topics = [f'/{options.station}/{topic}' for topic in RESULT_TOPICS]
     recorder = start_module(
         'recorder',
@@ -181,8 +199,8 @@ def _start_helpers(options: RunOptions, logs: Path) -> list[NodeProcess]:
         logs,
         arguments=(
             'play', str(options.bag), '--rate', str(options.rate), '--station', options.station,
-            '--start-paused',
-        ),
+            '--start-paused', '--wait-timeout', '600', '--wait-for', *summary.inputs,
+        ),  # fmt: skip
     )
     return [recorder, player]
 

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import struct
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,9 @@ from lifting_bringup.bags.exceptions import FileFormatError
 from lifting_bringup.bags.recording import Analog, Plate, RawRecording
 
 _MAGIC_BYTE = 0x50
+_BLOCK = 512
+# Processor byte of the parameter section: byte order, and where POINT:SCALE has its sign bit.
+_PROCESSORS = {84: ('<', 15), 85: ('<', 13), 86: ('>', 12)}
 # Plate types whose calibration ezc3d applies; 3 gives the eight Kistler channels, also handled.
 _PLATE_TYPES = (2, 3, 4)
 _FORCE_UNITS = {'N': 1.0, 'kN': 1e3}
@@ -75,6 +79,7 @@ def read_c3d(path: str | Path, emg: tuple[str, ...] | None = None) -> RawRecordi
     if len(set(names)) < len(names):
         twice = next(n for n in names if names.count(n) > 1)
         raise FileFormatError(path, f'{twice!r} appears twice', field='POINT:LABELS')
+    _check_size(path, points.shape[2])
     rate = float(c3d['header']['points']['frame_rate'])
     if not rate > 0.0:
         raise FileFormatError(path, f'is {rate}', field='POINT:RATE')
@@ -95,6 +100,30 @@ def read_c3d(path: str | Path, emg: tuple[str, ...] | None = None) -> RawRecordi
         analog=_analog(path, c3d, used, emg),
         notes=tuple(notes),
     )
+
+
+def _check_size(path: Path, frames: int) -> None:
+    """Refuse a file that is shorter than its frames: ezc3d reads fewer without a word.
+
+    Layout: C3D User Guide, "The header section": words 2 and 3 count the values of a frame, words
+    4 and 5 number the first and last frame, bytes 12 to 15 hold the scale (negative: real
+    numbers), word 9 is the first block of data.
+    """
+    data = path.read_bytes()
+    parameters = (data[0] - 1) * _BLOCK
+    processor = data[parameters + 3]
+    if processor not in _PROCESSORS:
+        raise FileFormatError(path, f'unknown processor type {processor}')
+    order, sign_byte = _PROCESSORS[processor]
+    points, analogs, first, last = struct.unpack_from(f'{order}HHHH', data, 2)
+    frames = max(frames, last - first + 1)
+    (first_block,) = struct.unpack_from(f'{order}H', data, 16)
+    size = 4 if data[sign_byte] & 0x80 else 2
+    needed = (first_block - 1) * _BLOCK + frames * (4 * points + analogs) * size
+    if len(data) < needed:
+        raise FileFormatError(
+            path, f'is cut off: {frames} frames need {needed} bytes, the file has {len(data)}'
+        )
 
 
 def _analog_time(c3d: Any, n: int) -> Any:
