@@ -200,7 +200,7 @@ def _start_helpers(
         arguments=(
             'play', str(options.bag), '--rate', str(options.rate), '--station', options.station,
             '--start-paused', '--wait-timeout', '600', '--wait-for', *summary.inputs,
-        ),  # fmt: skip
+        ),
     )
     return [recorder, player]
 
