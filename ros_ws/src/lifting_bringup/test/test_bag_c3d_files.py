@@ -5,6 +5,7 @@
 import ezc3d
 import numpy as np
 import pytest
+
 from lifting_bringup.bags.alignment import ConventionOptions, align
 from lifting_bringup.bags.c3d_files import read_c3d
 from lifting_bringup.bags.exceptions import FileFormatError
@@ -53,13 +54,16 @@ def file(standing, tmp_path):
     p['ANALOG']['RATE']['value'] = [RATE * RATIO]
     p['ANALOG']['LABELS']['value'] = [*names, 'EMG_BFR']
     p['ANALOG']['UNITS']['value'] = [*(['N'] * 3 + ['Nmm'] * 3) * 2, 'V']
-    c3d.add_parameter('FORCE_PLATFORM', 'USED', [2])
-    c3d.add_parameter('FORCE_PLATFORM', 'TYPE', [2, 2])
-    c3d.add_parameter('FORCE_PLATFORM', 'ZERO', [0, 0])
     corners = np.array([CORNERS['fp1'], CORNERS['fp2']], dtype=float)
-    c3d.add_parameter('FORCE_PLATFORM', 'CORNERS', corners.transpose(2, 1, 0))
-    c3d.add_parameter('FORCE_PLATFORM', 'ORIGIN', np.zeros((3, 2)))
-    c3d.add_parameter('FORCE_PLATFORM', 'CHANNEL', np.arange(1.0, 13.0).reshape(2, 6).T)
+    for name, value in (
+        ('USED', np.array([2])),
+        ('TYPE', np.array([2, 2])),
+        ('ZERO', np.array([0, 0])),
+        ('CORNERS', corners.transpose(2, 1, 0)),
+        ('ORIGIN', np.zeros((3, 2))),
+        ('CHANNEL', np.arange(1, 13).reshape(2, 6).T),
+    ):
+        p['FORCE_PLATFORM'][name]['value'] = value
     path = tmp_path / 'a.c3d'
     c3d.write(str(path))
     return path
@@ -98,5 +102,5 @@ def test_foreign_and_truncated_files(file, tmp_path):
     with pytest.raises(FileFormatError, match='is not a C3D file'):
         read_c3d(bad)
     bad.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
-    with pytest.raises(FileFormatError, match=r'bad\.c3d'):
+    with pytest.raises(FileFormatError, match=r'bad\.c3d: is cut off: 200 frames'):
         read_c3d(bad)

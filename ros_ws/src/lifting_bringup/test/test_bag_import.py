@@ -7,6 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from rosbags.interfaces import QosDurability
+
 from lifting_bringup.bags.bag_writer import START_TIME_NS
 from lifting_bringup.bags.exceptions import BagError, FileFormatError, SubjectFileError
 from lifting_bringup.bags.importer import ImportOptions, import_recording
@@ -17,7 +19,6 @@ from lifting_bringup.bags.opensim_files import (
     write_trc,
 )
 from lifting_bringup.bags.reader import BagReader
-from rosbags.interfaces import QosDurability
 
 ROOT = Path(__file__).resolve().parents[4]
 SQUATS = ROOT.parent / 'shared' / 'data' / 'squats_bodyweight'
@@ -162,9 +163,7 @@ def test_box_pose_from_box_markers(standing, tmp_path, files):
     turn = np.array([[np.cos(yaw), -np.sin(yaw), 0], [np.sin(yaw), np.cos(yaw), 0], [0, 0, 1]])
     box = np.array([0.4, 0.05, 0.3])
     corners = (box + np.array(list(layout.values())) @ turn.T) @ OPENSIM.T
-    positions = np.concatenate(
-        (raw.positions, np.tile(corners, (raw.time.size, 1, 1))), axis=1
-    )
+    positions = np.concatenate((raw.positions, np.tile(corners, (raw.time.size, 1, 1))), axis=1)
     names = (*raw.names, *layout)
     write_trc(files.markers, MarkerTable(names, raw.time, positions, 'm', 100.0))
     entries = ', '.join(f'{k}: {list(v)}' for k, v in layout.items())

@@ -7,13 +7,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from rosbags.rosbag2 import StoragePlugin, Writer
+
 from lifting_bringup.bags.bag_writer import START_TIME_NS, BagWriter, in_order, quality
 from lifting_bringup.bags.exceptions import UnreadableBagError
 from lifting_bringup.bags.importer import plate_stream
 from lifting_bringup.bags.message_types import typestore
 from lifting_bringup.bags.reader import BagReader
 from lifting_bringup.bags.recording import Plate
-from rosbags.rosbag2 import StoragePlugin, Writer
 
 N = 12000
 
