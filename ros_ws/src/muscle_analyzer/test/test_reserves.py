@@ -10,8 +10,8 @@ from muscle_analyzer.core.reserves import Reserve, read_reserves
 
 def test_table_of_the_package():
     knee, wrist = read_reserves(('knee_angle_r', 'wrist_flex_l'))
-    assert knee == Reserve('knee_angle_r', 1.0, True)
-    assert wrist == Reserve('wrist_flex_l', 100.0, False)
+    assert knee == Reserve('knee_angle_r', 'knee_r', 1.0, True)
+    assert wrist == Reserve('wrist_flex_l', 'wrist_l', 100.0, False)
 
 
 def test_unknown_coordinate_is_named():
@@ -21,10 +21,10 @@ def test_unknown_coordinate_is_named():
 
 @pytest.mark.parametrize(
     ('row', 'complaint'),
-    [('a,x,muscles,s', "a: torque 'x'"), ('a,1,wind,s', "a: driven_by 'wind'")],
+    [('a,j,x,muscles,s', "a: torque 'x'"), ('a,j,1,wind,s', "a: driven_by 'wind'")],
 )
 def test_bad_rows_are_named(tmp_path, row, complaint):
     path = tmp_path / 'reserves.csv'
-    path.write_text(f'coordinate,torque,driven_by,source\n{row}\n')
+    path.write_text(f'coordinate,joint,torque,driven_by,source\n{row}\n')
     with pytest.raises(OptionError, match=complaint):
         read_reserves(('a',), path)

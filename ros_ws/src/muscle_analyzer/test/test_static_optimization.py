@@ -14,11 +14,14 @@ from muscle_analyzer.core.reserves import Reserve
 from muscle_analyzer.core.static_optimization import StaticOptimization, StaticOptimizationOptions
 
 
-def solver(n_c, n_m, reserves=None, **options):
-    reserves = reserves or n_c * [1.0]
+def solver(n_c, n_m, reserves=None, joints=None, **options):
+    reserves, joints = reserves or n_c * [1.0], joints or range(n_c)
     return StaticOptimization(
         tuple(f'muscle_{i}' for i in range(n_m)),
-        tuple(Reserve(f'coordinate_{j}', r, r < 10.0) for j, r in enumerate(reserves)),
+        tuple(
+            Reserve(f'coordinate_{j}', f'joint_{joint}', unit, unit < 10.0)
+            for j, (joint, unit) in enumerate(zip(joints, reserves, strict=True))
+        ),
         StaticOptimizationOptions(**options),
     )
 
@@ -61,6 +64,17 @@ def test_weak_muscle_is_named_with_its_coordinate():
     assert 'muscle_1' in result.report.message
     assert result.at_upper.tolist() == [False, True]
     assert result.reserve[1] == pytest.approx(30.0)
+
+
+def test_reserve_is_compared_with_the_net_moment_of_its_joint():
+    """Help of 3 N m with 53 N m counts, but not where the joint bears 100 N m beside it."""
+    matrix = np.array([[500.0, 0.0], [0.0, 50.0]])
+    for beside, status in ((10.0, SolveStatus.MUSCLE_TOO_WEAK), (100.0, SolveStatus.OK)):
+        torque = np.array([beside, 53.0])
+        alone = solver(2, 2).solve(matrix, torque)
+        joined = solver(2, 2, joints=(0, 0)).solve(matrix, torque)
+        assert alone.unbalanced == ('coordinate_1',)
+        assert joined.report.status == status
 
 
 def test_coordinate_without_muscle_is_carried_by_its_reserve():

@@ -30,6 +30,8 @@ class Reserve:
     ----------
     coordinate
         Name.
+    joint
+        Joint whose net moment the coordinate's torque is part of.
     torque
         Torque at unit control [N m, or N for a translation].
     muscle_driven
@@ -37,6 +39,7 @@ class Reserve:
     """
 
     coordinate: str
+    joint: str
     torque: float
     muscle_driven: bool
 
@@ -52,7 +55,7 @@ def read_reserves(
     coordinate_names
         Coordinates of the model.
     path
-        CSV file with the columns ``coordinate, torque, driven_by, source``; by default the
+        CSV file with the columns ``coordinate, joint, torque, driven_by, source``; by default the
         table of this package.
 
     Raises
@@ -70,7 +73,9 @@ def read_reserves(
             torque = float(row['torque'])
         except ValueError:
             raise OptionError(f'{where}: torque {row["torque"]!r} is not a number') from None
-        rows[row['coordinate']] = Reserve(row['coordinate'], torque, _DRIVERS[row['driven_by']])
+        rows[row['coordinate']] = Reserve(
+            row['coordinate'], row['joint'], torque, _DRIVERS[row['driven_by']]
+        )
     missing = [name for name in coordinate_names if name not in rows]
     if missing:
         raise OptionError(f'{path}: no reserve for the coordinates {", ".join(missing)}')

@@ -26,10 +26,11 @@ Array = NDArray[np.float64]
 #: Smallest activation OpenSim 4.6 allows a muscle in static optimisation (``min_control`` of
 #: the muscles of the lifting full-body model).
 MINIMUM_ACTIVATION = 0.01
-#: A coordinate is not balanced by its muscles when the reserve takes more than this share of
-#: the torque (Hicks et al. 2015, J Biomech Eng 137:020905: 5 % of the net joint moment) ...
+#: A coordinate is not balanced by its muscles when the reserve takes more than this share of the
+#: net moment of its joint (Hicks et al. 2015, J Biomech Eng 137:020905: 5 % of the net joint
+#: moment), all coordinates of the joint together, ...
 RESERVE_SHARE = 0.05
-#: ... and more than its unit torque, below which the share means nothing.
+#: ... and more than its unit torque, below which a share means nothing.
 RESERVE_CONTROL = 1.0
 
 
@@ -126,6 +127,8 @@ class StaticOptimization:
         self._muscle_driven = np.array([reserve.muscle_driven for reserve in reserves], np.bool_)
         self._lower = np.full(len(muscle_names), low)
         self._upper = np.full(len(muscle_names), high)
+        joints = np.array([reserve.joint for reserve in reserves])
+        self._same_joint = (joints[:, None] == joints[None, :]).astype(np.float64)
         self._multiplier = np.zeros(len(reserves))
 
     def reset(self) -> None:
@@ -172,7 +175,8 @@ class StaticOptimization:
         gradient = 2.0 * activation - matrix.T @ multiplier
         projected = np.clip(activation - gradient, self._lower, self._upper)
         reserve = unit * control
-        weak = self._muscle_driven & (np.abs(reserve) > RESERVE_SHARE * np.abs(torque))
+        joint_moment = np.sqrt(self._same_joint @ torque**2)
+        weak = self._muscle_driven & (np.abs(reserve) > RESERVE_SHARE * joint_moment)
         weak &= np.abs(control) > RESERVE_CONTROL
         unbalanced = tuple(np.array(self.coordinate_names)[weak].tolist())
         at_upper = activation >= self._upper
