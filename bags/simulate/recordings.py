@@ -124,7 +124,7 @@ class Session:
         q = self.static_q
         zero = np.zeros_like(q)
         motion = self.body.skeleton.body_motion(self.static_time, q, zero, zero)
-        _save_truth(folder / _ALL, motion.to_dict(), self.markers)
+        _save_truth(folder / _ALL, self._with_lengths(motion.to_dict()), self.markers)
 
     def write_lift(self, folder: Path, task: Task) -> None:
         """Simulate one task and write its bag and truth."""
@@ -156,9 +156,17 @@ class Session:
         )  # fmt: skip
         _save_truth(
             folder / task.name,
-            {**block.to_dict(), **_extras(task, motion.phases, truth)},
+            self._with_lengths({**block.to_dict(), **_extras(task, motion.phases, truth)}),
             self.markers,
         )
+
+    def _with_lengths(self, fields: dict[str, Any]) -> dict[str, Any]:
+        lengths = self.body.lengths
+        return {
+            **fields,
+            'length_names': np.array(list(lengths)),
+            'lengths': np.array(list(lengths.values())),
+        }
 
     def _latched(
         self, writer: BagWriter, task: TaskEntry, calibration: MarkerCalibration | None
