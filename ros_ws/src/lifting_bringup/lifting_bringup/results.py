@@ -15,13 +15,12 @@ from lifting_interfaces.msg import Subject
 from human_model.errors import HumanModelError
 from human_model.report import SolveStatus
 from injury_monitor.core.alarm import AlarmState
-from injury_monitor.core.limits import Zone
 from lift_predictor.core.exceptions import LiftPredictorError
 from lift_predictor.core.person import Person
 from lifting_bringup import results_curves as curves
+from lifting_bringup.report.assessed import lifting_from_assessment, risk_from_assessment
 from lifting_bringup.report.data import (
     AlarmRow,
-    CriterionRow,
     Header,
     Lifting,
     LiftReport,
@@ -131,7 +130,7 @@ def _lift(
         spine=_blocks(entry, 'spine_load', curves.spine_curves),
         points=_pair(motions, lambda lift: curves.body_points(lift, box_size)),
         risk=_risk(entry),
-        lifting=_lifting(entry),
+        lifting=_lifting(entry, results),
         solves=_solves(entry),
         quality=_quality(entry),
     )
@@ -201,35 +200,15 @@ def _comparison(entry: LiftMessages) -> Any:
 
 def _risk(entry: LiftMessages) -> Risk | Missing:
     message = entry.single.get('risk_assessment')
-    if message is None:
-        return Missing('no assessment came')
-    columns = (
-        message.criterion, message.source, message.value, message.limit, message.margin,
-        message.unit, message.limit_source, message.time_from_start,
-    )  # fmt: skip
-    rows = tuple(CriterionRow(*row) for row in zip(*columns, strict=True))
-    return Risk(
-        rows,
-        message.unnecessary_compression,
-        message.unnecessary_shear,
-        Zone(message.zone).name.lower(),
-        message.summary,
-        message.samples_left_out,
-    )
+    return Missing('no assessment came') if message is None else risk_from_assessment(message)
 
 
-def _lifting(entry: LiftMessages) -> Lifting | Missing:
+def _lifting(entry: LiftMessages, results: Results) -> Lifting | Missing:
     message = entry.single.get('risk_assessment')
     if message is None:
         return Missing('no assessment came')
-    if math.isnan(message.lifting_index):
-        return Missing(message.lifting_index_note)
-    return Lifting(
-        tuple(float(value) for value in message.multipliers),
-        message.recommended_weight_limit,
-        message.lifting_index,
-        message.limiting_multiplier,
-        message.lifting_index_note,
+    return lifting_from_assessment(
+        message, results.subject, results.task, entry.single['measured_lift']
     )
 
 
