@@ -4,11 +4,16 @@
 
 from __future__ import annotations
 
+import math
 from collections import OrderedDict
 from typing import Final
 
+from lifting_interfaces.action import PredictLift
 from lifting_interfaces.msg import LiftComparison, MeasuredLift, PredictedLift, Task
 from lifting_interfaces.msg import Subject as SubjectMsg
+from rclpy.action import ActionServer, GoalResponse
+from rclpy.action.server import ServerGoalHandle
+from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 from trajectory_msgs.msg import JointTrajectory
 
 from human_model.errors import HumanModelError
@@ -21,8 +26,8 @@ from lifting_node import qos
 from lifting_node.pipeline_node import PipelineNode
 from lifting_node.run import run_node
 
-WAITING_LIFTS: Final = 100
-"""Lifts kept until subject and task are known."""
+KEPT_LIFTS: Final = 100
+"""Lifts kept until subject and task are known, and afterwards for the action."""
 
 
 class LiftPredictorNode(PipelineNode):
@@ -39,6 +44,7 @@ class LiftPredictorNode(PipelineNode):
         self._subject: Subject | None = None
         self._task: Task | None = None
         self._waiting: OrderedDict[str, Lift] = OrderedDict()
+        self._seen: OrderedDict[str, Lift] = OrderedDict()
         self._predicted = self.advertise(PredictedLift, 'predicted_lift', qos.RESULTS)
         self._trajectory = self.advertise(
             JointTrajectory, 'predicted_lift/joint_trajectory', qos.RESULTS
@@ -47,6 +53,52 @@ class LiftPredictorNode(PipelineNode):
         self.subscribe(SubjectMsg, 'subject', self._on_subject, qos.LATCHED)
         self.subscribe(Task, 'task', self._on_task, qos.LATCHED)
         self.subscribe(MeasuredLift, 'measured_lift', self._on_measured_lift, qos.RESULTS)
+        self._action = ActionServer(
+            self, PredictLift, '~/predict_lift', self._on_goal, goal_callback=self._accept
+        )
+
+    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Drop the action with the rest."""
+        self._action.destroy()
+        return super().on_cleanup(state)
+
+    def _accept(self, goal: PredictLift.Goal) -> GoalResponse:
+        known = self._subject is not None and self._task is not None
+        return GoalResponse.ACCEPT if self.active and known else GoalResponse.REJECT
+
+    def _on_goal(self, handle: ServerGoalHandle) -> PredictLift.Result:
+        """Predict a lift that was seen before, with its own load or another."""
+        goal: PredictLift.Goal = handle.request
+        result = PredictLift.Result()
+        lift = self._seen.get(goal.lift_id)
+        if lift is None or self._subject is None or self._task is None:
+            handle.abort()
+            result.error_code = PredictLift.Result.UNKNOWN_LIFT
+            result.error_message = f'lift_id: no lift {goal.lift_id!r} was seen'
+            return result
+
+        def tell(tried: int, total: int, best: float) -> None:
+            feedback = PredictLift.Feedback(starts_tried=tried, starts_total=total)
+            feedback.best_objective = best
+            handle.publish_feedback(feedback)
+
+        mass = lift.box_mass if math.isnan(goal.box_mass) else goal.box_mass
+        try:
+            box = conversions.box_from_msg(self._task, mass)
+        except LiftPredictorError as error:
+            handle.abort()
+            result.error_code = PredictLift.Result.NOT_SOLVED
+            result.error_message = str(error)
+            return result
+        prediction, _ = self.predictor.predict_and_compare(lift, box, tell)
+        result.lift = conversions.prediction_to_msg(prediction, lift, self._subject)
+        if prediction.report.ok:
+            handle.succeed()
+        else:
+            handle.abort()
+            result.error_code = PredictLift.Result.NOT_SOLVED
+            result.error_message = prediction.report.message
+        return result
 
     def _on_subject(self, message: SubjectMsg) -> None:
         subject = conversions.subject_from_msg(message)
@@ -61,7 +113,7 @@ class LiftPredictorNode(PipelineNode):
     def _on_measured_lift(self, message: MeasuredLift) -> None:
         lift = conversions.lift_from_msg(message)
         self._waiting[lift.lift_id] = lift
-        while len(self._waiting) > WAITING_LIFTS:
+        while len(self._waiting) > KEPT_LIFTS:
             dropped, _ = self._waiting.popitem(last=False)
             self.report_error(f'measured_lift {dropped}: no subject or task came, dropped')
         self._predict_waiting()
@@ -76,6 +128,9 @@ class LiftPredictorNode(PipelineNode):
 
     def _predict(self, lift: Lift, subject: Subject, task: Task) -> None:
         box = conversions.box_from_msg(task, lift.box_mass)
+        self._seen[lift.lift_id] = lift
+        if len(self._seen) > KEPT_LIFTS:
+            self._seen.popitem(last=False)
         prediction, comparison = self.predictor.predict_and_compare(lift, box)
         self.counts['predicted' if prediction.report.ok else 'not predicted'] += 1
         self._predicted.publish(conversions.prediction_to_msg(prediction, lift, subject))

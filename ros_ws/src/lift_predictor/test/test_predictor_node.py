@@ -14,6 +14,7 @@ rclpy = pytest.importorskip('rclpy', reason='rclpy is not installed')
 pytest.importorskip('lifting_interfaces.msg', reason='the interface package is not built')
 
 from geometry_msgs.msg import Point  # noqa: E402
+from lifting_interfaces.action import PredictLift  # noqa: E402
 from lifting_interfaces.msg import (  # noqa: E402
     LiftComparison,
     MeasuredLift,
@@ -22,6 +23,7 @@ from lifting_interfaces.msg import (  # noqa: E402
     Subject,
     Task,
 )
+from rclpy.action import ActionClient  # noqa: E402
 from rclpy.executors import SingleThreadedExecutor  # noqa: E402
 from trajectory_msgs.msg import JointTrajectory  # noqa: E402
 
@@ -148,6 +150,46 @@ def test_bad_input_is_reported_and_the_node_goes_on(station: Station, outcome, s
     assert station.predicted[1].report.status == SolveReport.OK
     station.until(lambda: station.comparisons, 'comparison')
     assert len(station.comparisons) == 1
+
+
+def ask(station: Station, lift_id: str, mass: float) -> tuple[PredictLift.Result, list]:
+    client = ActionClient(station.client, PredictLift, 'lift_predictor/predict_lift')
+    station.until(client.server_is_ready, 'action server')
+    told: list = []
+    sent = client.send_goal_async(
+        PredictLift.Goal(lift_id=lift_id, box_mass=mass), feedback_callback=told.append
+    )
+    station.until(sent.done, 'answer to the goal')
+    assert sent.result().accepted
+    finished = sent.result().get_result_async()
+    station.until(finished.done, 'result')
+    client.destroy()
+    return finished.result().result, [message.feedback for message in told]
+
+
+def test_seen_lift_is_predicted_again_with_another_load(
+    station: Station, outcome, subject
+) -> None:
+    station.activate()
+    result = outcome(7.0)
+    station.publishers['subject'].publish(subject_to_msg(subject, 0.0, '', 'test'))
+    station.publishers['task'].publish(task_message(7.0))
+    station.publishers['lift'].publish(lift_message(result.lift, subject))
+    station.until(lambda: station.predicted, 'prediction')
+    unknown, _ = ask(station, 'lift_009', 7.0)
+    assert unknown.error_code == PredictLift.Result.UNKNOWN_LIFT
+    assert 'lift_009' in unknown.error_message
+    lighter, feedback = ask(station, 'lift_001', 3.0)
+    assert lighter.error_code == PredictLift.Result.NONE
+    assert lighter.lift.box_mass == 3.0
+    assert lighter.lift.report.objective < station.predicted[0].report.objective
+    assert [told.starts_tried for told in feedback] == [1, 2, 3]
+    again, _ = ask(station, 'lift_001', np.nan)
+    assert again.lift.box_mass == 7.0
+    bad, _ = ask(station, 'lift_001', -1.0)
+    assert bad.error_code == PredictLift.Result.NOT_SOLVED
+    assert 'box.mass' in bad.error_message
+    assert len(station.predicted) == 1
 
 
 def test_bad_parameter_is_refused() -> None:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from human_model.anthropometry import SegmentParameters
 from human_model.errors import HumanModelError
@@ -23,10 +24,12 @@ from lift_predictor.core.lift_motion import body_motion, mtp_torque, sample_time
 from lift_predictor.core.nlp import Grid
 from lift_predictor.core.person import COEFFICIENT_SET, Person
 from lift_predictor.core.prediction import TORQUE_NAMES, PredictedLift2D
-from lift_predictor.core.solver import LiftSolver, Optimum
+from lift_predictor.core.solver import LiftSolver, Optimum, Progress
 from lift_predictor.core.starts import make_starts
 from lift_predictor.core.task import POSTURE_TOLERANCE, Box, LiftTask2D, build_task
 from lift_predictor.core.verify import Verification, verify
+
+Array = NDArray[np.float64]
 
 TIMED_OUT: Final = 'Maximum_WallTime_Exceeded'
 MARGIN_FACTOR: Final = 1.05
@@ -121,9 +124,12 @@ class LiftPredictor:
         return self.predict_and_compare(lift, box)[0]
 
     def predict_and_compare(
-        self, lift: Lift, box: Box
+        self, lift: Lift, box: Box, progress: Progress | None = None
     ) -> tuple[PredictedLift2D, LiftComparison | None]:
-        """Solve the task of one recorded lift; compare if there is a solution."""
+        """Solve the task of one recorded lift; compare if there is a solution.
+
+        Parameters are those of `predict`; `progress` is told after each start.
+        """
         if self.person is None:
             raise TaskError('subject: none was configured before the first lift')
         begin = time.perf_counter()
@@ -131,7 +137,7 @@ class LiftPredictor:
         try:
             _require_good(lift)
             task = build_task(self.person, lift, box, self.options.posture_tolerance)
-        except (TaskError, UnreachableError) as error:
+        except (TaskError, UnreachableError, HumanModelError) as error:
             status = (
                 SolveStatus.PREDICTOR_UNREACHABLE
                 if isinstance(error, UnreachableError)
@@ -139,35 +145,18 @@ class LiftPredictor:
             )
             report = SolveReport(status, str(error), build_time=time.perf_counter() - begin)
             return PredictedLift2D.failed(lift.lift_id, box.mass, duration, report), None
-        return self._solve(task, begin)
+        return self._solve(task, begin, progress)
 
     def _solve(
-        self, task: LiftTask2D, begin: float
+        self, task: LiftTask2D, begin: float, progress: Progress | None
     ) -> tuple[PredictedLift2D, LiftComparison | None]:
         grid = self.programme.grid
         starts = make_starts(task, grid.spline)
         build_time = time.perf_counter() - begin
         deadline = begin + self.options.time_limit
         vector = task.parameters.pack()
-        optima = self._solver.solve_all(vector, task.bounds, starts, deadline)
-        bounds, check = task.bounds, None
-        for _ in range(self.options.refinements + 1):
-            best = optima[0]
-            if not best.converged:
-                break
-            check = verify(
-                self.programme.functions['report'],
-                grid,
-                best.control,
-                task.parameters,
-                task.bounds,
-            )
-            if check.passed or time.perf_counter() > deadline:
-                break
-            margin = 0.0 if bounds.margin is None else bounds.margin
-            bounds = replace(bounds, margin=margin + MARGIN_FACTOR * check.excess)
-            again = self._solver.solve(vector, bounds, best.as_start())
-            optima = (again, *optima)
+        optima = self._solver.solve_all(vector, task.bounds, starts, deadline, progress)
+        optima, check = self._tighten(task, vector, optima, deadline)
         status, message = _judge(optima[0], check)
         notes = (*task.notes, self.programme.how)
         report = SolveReport(
@@ -187,6 +176,29 @@ class LiftPredictor:
             )  # fmt: skip
             return failed, None
         return self._result(task, report, optima, check, notes)
+
+    def _tighten(
+        self, task: LiftTask2D, vector: Array, optima: tuple[Optimum, ...], deadline: float
+    ) -> tuple[tuple[Optimum, ...], Verification | None]:
+        """Check the best run between the nodes; solve again with a margin where it fails."""
+        bounds, report = task.bounds, self.programme.functions['report']
+        check: Verification | None = None
+        for attempt in range(self.options.refinements + 1):
+            best = optima[0]
+            if not best.converged:
+                break
+            check = verify(report, self.programme.grid, best.control, task.parameters, task.bounds)
+            late = attempt == self.options.refinements or time.perf_counter() > deadline
+            if check.passed or late:
+                break
+            margin = 0.0 if bounds.margin is None else bounds.margin
+            bounds = replace(bounds, margin=margin + MARGIN_FACTOR * check.excess)
+            again = self._solver.solve(vector, bounds, best.as_start())
+            if not again.converged:
+                optima = (best, again, *optima[1:])
+                break
+            optima = (again, *optima)
+        return optima, check
 
     def _result(
         self,

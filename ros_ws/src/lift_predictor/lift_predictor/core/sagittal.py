@@ -130,12 +130,13 @@ def sagittal_motion(
         )
     sides = np.stack([_side_angles(motion, side, neutral, plane) for side in (0, 1)])
     q = sides.mean(axis=0)
-    spline = make_interp_spline(motion.time, q, k=_SPLINE_DEGREE)
+    time = motion.time - start
+    spline = make_interp_spline(time, q, k=_SPLINE_DEGREE)
     return SagittalMotion(
-        time=motion.time - start,
+        time=time,
         q=q,
-        dq=spline(motion.time, nu=1),
-        ddq=spline(motion.time, nu=2),
+        dq=spline(time, nu=1),
+        ddq=spline(time, nu=2),
         side_difference=sides[0] - sides[1],
         grip=plane.into(_pair(motion, 'hand').mean(axis=1)),
         ground_force=plane.into(motion.ground_force.sum(axis=1)),

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -23,6 +23,10 @@ TOLERANCE: Final = 1e-8
 """IPOPT's default relative tolerance."""
 FEASIBLE: Final = 1e-5
 """Largest violation of a scaled constraint row that counts as met."""
+
+
+Progress = Callable[[int, int, float], None]
+"""Told after each run: starts tried, starts in all, best objective so far (NaN: none yet)."""
 
 
 @dataclass(frozen=True)
@@ -173,6 +177,7 @@ class LiftSolver:
         bounds: LiftBounds,
         starts: Sequence[Start],
         deadline: float = float('inf'),
+        progress: Progress | None = None,
     ) -> tuple[Optimum, ...]:
         """Run IPOPT from every start, as far as the time allows; the best comes first.
 
@@ -184,6 +189,9 @@ class LiftSolver:
         for start in starts:
             if not runs or time.perf_counter() < deadline:
                 runs.append(self.solve(parameters, bounds, start))
+                if progress is not None:
+                    solved = [run.objective for run in runs if run.converged]
+                    progress(len(runs), len(starts), min(solved, default=float('nan')))
         return tuple(
             sorted(
                 runs, key=lambda r: (not r.converged, r.objective if r.converged else r.violation)
