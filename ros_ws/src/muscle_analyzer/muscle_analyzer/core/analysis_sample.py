@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from human_model.frames import from_opensim, to_opensim
 from human_model.motion import SIDES, BodyMotion
 from human_model.report import SolveReport, SolveStatus
+from muscle_analyzer.core import verdict
 from muscle_analyzer.core.analyzer_options import MuscleAnalyzerOptions
 from muscle_analyzer.core.inverse_dynamics import add_force
 from muscle_analyzer.core.load_solver import LoadSolution, LoadSolver
@@ -33,17 +34,16 @@ DISTANCE_GOAL, ANGLE_GOAL = 0.005, float(np.deg2rad(1.0))
 LOADED_SHARE = 0.05
 #: Standard acceleration of free fall [m/s^2] (CGPM 1901).
 GRAVITY = 9.80665
-#: Arrays that hang on the solution.
-SOLVED = (
+#: What hangs on motion and forces, and what hangs on the optimisation as well.
+DYNAMICS = ('torque', 'net_moment_top_down', 'net_moment_bottom_up', 'pelvis_residual')
+MUSCLES = (
     'activation',
     'force',
-    'torque',
     'reserve',
     'l5_s1_force',
     'l5_s1_moment',
-    'net_moment_top_down',
-    'net_moment_bottom_up',
-    'pelvis_residual',
+    'compression_per_degree',
+    'anterior_shear_per_degree',
 )
 
 
@@ -67,12 +67,15 @@ class AnalysisSample:
     trunk_angle: float
     hand_angle: Array
     foot_angle: Array
+    torque_status: SolveStatus
     report: SolveReport
+    spine_report: SolveReport
 
     @classmethod
     def array_fields(cls) -> tuple[str, ...]:
-        """Give the names of all fields but the report."""
-        return tuple(field.name for field in fields(cls) if field.name != 'report')
+        """Give the names of all fields of numbers."""
+        verdicts = ('torque_status', 'report', 'spine_report')
+        return tuple(field.name for field in fields(cls) if field.name not in verdicts)
 
 
 class SampleSolver:
@@ -106,7 +109,9 @@ class SampleSolver:
         """Forget the sample before."""
         self._loads.reset()
 
-    def solve(self, pose: TransferredPose, motion: BodyMotion, k: int) -> AnalysisSample:
+    def solve(
+        self, pose: TransferredPose, motion: BodyMotion, k: int, tracker_status: int = 0
+    ) -> AnalysisSample:
         """
         Analyse one transferred sample.
 
@@ -118,36 +123,57 @@ class SampleSolver:
             Block with the forces on feet and hands.
         k
             Number of the sample in it.
+        tracker_status
+            SolveStatus of the motion tracker; a sample that is not good there is not good here.
         """
         began = time.perf_counter()
-        external, problem = self._external(motion, k)
+        external, forces = self._external(motion, k)
         solution = self._loads.solve(pose.q, pose.qd, pose.qdd, external)
         sample = self._row(pose, solution)
-        report = _verdict(pose, sample, problem)
+        fit = verdict.Problem()
+        if not pose.converged:
+            fit = verdict.Problem(
+                SolveStatus.MUSCLE_TRANSFER_FAILED,
+                f'transfer not converged in {pose.iterations} iterations',
+            )
+        problems = (verdict.tracker_problem(tracker_status), fit, forces)
+        report = verdict.overall(solution.balance.report, problems, _transfer_notes(pose, sample))
         elapsed = time.perf_counter() - began
         report = replace(report, build_time=elapsed - report.solve_time)
-        if report.status in (SolveStatus.OK, SolveStatus.MUSCLE_TOO_WEAK):
-            return replace(sample, report=report)
-        return _blank(sample, report)
+        torque_status = verdict.torques(report)
+        empty: tuple[str, ...] = ()
+        if torque_status is not SolveStatus.OK:
+            empty = DYNAMICS + MUSCLES
+        elif not solution.balance.converged:
+            empty = MUSCLES
+        return replace(
+            sample,
+            **{name: np.full_like(getattr(sample, name), np.nan) for name in empty},
+            torque_status=torque_status,
+            report=report,
+            spine_report=verdict.spine(report, solution.balance.unbalanced, self._loads.lumbar),
+        )
 
-    def _external(self, motion: BodyMotion, k: int) -> tuple[Array, tuple[SolveStatus, str]]:
+    def _external(self, motion: BodyMotion, k: int) -> tuple[Array, verdict.Problem]:
         """Give the wrenches (n_b, 6) from ground and box, OpenSim's axes, and what is wrong."""
         external = np.zeros((len(self._loads.model.body_names), 6))
         force, moment = to_opensim(motion.ground_force[k]), to_opensim(motion.free_moment[k])
         place = to_opensim(motion.cop[k])
         loaded = [bool(np.isfinite(row).all()) for row in place]
-        problem = (SolveStatus.OK, '')
+        problem = verdict.Problem()
         for side in range(2):
             if loaded[side]:
                 add_force(external, self._feet[side], force[side], place[side], moment[side])
             elif np.linalg.norm(force[side]) > LOADED_SHARE * self._weight:
-                problem = (
+                problem = verdict.Problem(
                     SolveStatus.MUSCLE_BAD_INPUT,
                     f'{SIDES[side]} foot: ground force of {np.linalg.norm(force[side]):.0f} N '
                     'without centre of pressure',
                 )
         if not any(loaded):
-            problem = (SolveStatus.MUSCLE_NO_GROUND_FORCE, 'no foot is on a force plate')
+            problem = verdict.Problem(
+                SolveStatus.MUSCLE_NO_GROUND_FORCE, 'no foot is on a force plate'
+            )
         grip = to_opensim(np.array([motion.point(name)[k] for name in HANDS]))
         pull = to_opensim(motion.hand_force[k])
         for side in range(2):
@@ -178,21 +204,15 @@ class SampleSolver:
             trunk_angle=float(pose.frame_angle[self._thorax]),
             hand_angle=pose.frame_angle[self._hand_frames],
             foot_angle=pose.frame_angle[self._foot_frames],
+            torque_status=SolveStatus.OK,
             report=solution.balance.report,
+            spine_report=solution.balance.report,
         )
 
 
-def _verdict(
-    pose: TransferredPose, sample: AnalysisSample, problem: tuple[SolveStatus, str]
-) -> SolveReport:
-    """Give the report of the step that failed first, with what else is to be known."""
-    report = sample.report
-    status, notes = report.status, [report.message]
-    if problem[0] is not SolveStatus.OK:
-        status, notes = problem[0], [problem[1], *notes]
-    if not pose.converged:
-        status = SolveStatus.MUSCLE_TRANSFER_FAILED
-        notes = [f'transfer not converged in {pose.iterations} iterations', *notes]
+def _transfer_notes(pose: TransferredPose, sample: AnalysisSample) -> list[str]:
+    """Say where the transfer misses its goals."""
+    notes = []
     for what, value, goal, factor, unit in (
         ('hands', sample.hand_distance.max(), DISTANCE_GOAL, 1e3, 'mm'),
         ('feet', sample.foot_distance.max(), DISTANCE_GOAL, 1e3, 'mm'),
@@ -204,16 +224,4 @@ def _verdict(
             notes.append(f'transfer leaves {what} off by {factor * value:.1f} {unit}')
     if pose.at_limit:
         notes.append(f'at the limit of their range: {", ".join(pose.at_limit)}')
-    return replace(report, status=status, message='; '.join(note for note in notes if note))
-
-
-def _blank(sample: AnalysisSample, report: SolveReport) -> AnalysisSample:
-    """Make everything that hangs on the solution NaN; keep the transfer's quality."""
-    empty = {name: np.full_like(getattr(sample, name), np.nan) for name in SOLVED}
-    return replace(
-        sample,
-        **empty,
-        compression_per_degree=np.nan,
-        anterior_shear_per_degree=np.nan,
-        report=report,
-    )
+    return notes

@@ -14,7 +14,7 @@ import time
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from human_model.motion import BodyMotion
 from human_model.skeleton import Skeleton
@@ -29,6 +29,7 @@ from muscle_analyzer.core.muscle_analysis import MuscleAnalysis
 from muscle_analyzer.core.osim_model import OsimModel
 from muscle_analyzer.core.osim_reader import read_osim
 from muscle_analyzer.core.subject_model import lifting_model_path, subject_model
+from muscle_analyzer.core.torque_limits import JointTorques, TorqueLimits
 from muscle_analyzer.core.transfer import MotionTransfer
 
 Array = NDArray[np.float64]
@@ -55,6 +56,7 @@ class MuscleAnalyzer:
         self._generic: OsimModel | None = None
         self._subject: Subject | None = None
         self._streams: dict[tuple[str, str], tuple[MotionTransfer, SampleSolver]] = {}
+        self._limits: dict[str, TorqueLimits] = {}
 
     def configure(self, subject: Subject) -> None:
         """
@@ -76,6 +78,7 @@ class MuscleAnalyzer:
         )
         self._subject = subject
         self._streams = {}
+        self._limits = {}
         # Live and recorded 3D motion share all compiled functions: load them now.
         self._warm_up(skeleton)
 
@@ -98,7 +101,11 @@ class MuscleAnalyzer:
         return self._streams[key]
 
     def analyze(
-        self, motion: BodyMotion, lift_id: str = '', source: str = 'live'
+        self,
+        motion: BodyMotion,
+        lift_id: str = '',
+        source: str = 'live',
+        tracker_status: ArrayLike | None = None,
     ) -> MuscleAnalysis:
         """
         Analyse a block of one or more samples.
@@ -111,6 +118,8 @@ class MuscleAnalyzer:
             Identifier of the lift; empty outside one.
         source
             ``'live'``, ``'measured'`` or ``'predicted'``.
+        tracker_status
+            (n,) SolveStatus of the motion tracker per sample; none if the motion was not tracked.
 
         Raises
         ------
@@ -119,12 +128,20 @@ class MuscleAnalyzer:
         TransferError
             If the motion is not one of this subject.
         InputArrayError
-            If the source is not known.
+            If the source is not known or not every sample has a status.
         """
         if self._subject is None:
             raise NotConfiguredError('analyze: no subject yet, call configure first')
         if source not in SOURCES:
             raise InputArrayError(f'source {source!r}: one of {SOURCES} is needed')
+        tracked = np.zeros(len(motion), np.int64)
+        if tracker_status is not None:
+            tracked = np.asarray(tracker_status, np.int64)
+        if tracked.shape != (len(motion),):
+            raise InputArrayError(
+                f'tracker status of shape {tracked.shape}: one for each of the {len(motion)} '
+                'samples is needed'
+            )
         transfer, solver = self._stream(source, motion.skeleton)
         if source != 'live':
             transfer.reset()
@@ -134,10 +151,39 @@ class MuscleAnalyzer:
             began = time.perf_counter()
             pose = transfer.step(motion, k)
             transferred = time.perf_counter() - began
-            sample = solver.solve(pose, motion, k)
+            sample = solver.solve(pose, motion, k, int(tracked[k]))
             report = replace(sample.report, build_time=sample.report.build_time + transferred)
             samples.append(replace(sample, report=report))
         return self._collect(samples, solver, motion, lift_id, source)
+
+    def joint_torques(self, analysis: MuscleAnalysis, motion: BodyMotion) -> JointTorques:
+        """
+        Put the joint torques of an analysis beside the dynamic strength of the subject's joints.
+
+        Parameters
+        ----------
+        analysis
+            Of `motion`, by `analyze`.
+        motion
+            The motion.
+
+        Raises
+        ------
+        NotConfiguredError
+            If no subject has been given.
+        InputArrayError
+            If the two do not belong together.
+        """
+        if self._subject is None:
+            raise NotConfiguredError('joint_torques: no subject yet, call configure first')
+        if motion.skeleton not in self._limits:
+            self._limits[motion.skeleton] = TorqueLimits(
+                self._subject,
+                motion.skeleton,
+                motion.coordinates,
+                self.options.coefficient_set,
+            )
+        return self._limits[motion.skeleton].of(analysis, motion)
 
     def _collect(
         self,
@@ -161,6 +207,8 @@ class MuscleAnalyzer:
             muscle_names=solver.muscle_names,
             coordinate_names=solver.coordinate_names,
             disc_frame=str(self._disc),
+            torque_status=np.array([int(sample.torque_status) for sample in samples], np.int64),
             reports=tuple(sample.report for sample in samples),
+            spine_reports=tuple(sample.spine_report for sample in samples),
             **{name: stack(name) for name in AnalysisSample.array_fields()},
         )

@@ -31,6 +31,8 @@ class MuscleAnalyzerOptions:
         Whether paths over a single cylinder are geodesics or OpenSim's construction.
     strength
         How muscle strength follows body mass.
+    coefficient_set
+        Published joint strength data (see `human_model.strength`).
     static_optimization
         Settings of the solver.
     """
@@ -41,6 +43,7 @@ class MuscleAnalyzerOptions:
     passive_force: bool = False
     geodesic_wrapping: bool = False
     strength: StrengthScaling = StrengthScaling.NONE
+    coefficient_set: str = 'anderson2007_nonneg'
     static_optimization: StaticOptimizationOptions = field(
         default_factory=StaticOptimizationOptions
     )

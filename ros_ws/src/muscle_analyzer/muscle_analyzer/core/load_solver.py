@@ -33,6 +33,8 @@ Array = NDArray[np.float64]
 ROOT, L5, THORAX = 'pelvis', 'lumbar5', 'torso'
 KNEES = ('knee_angle_r', 'knee_angle_l')
 ROOT_COORDINATES = 'pelvis_'
+#: Coordinates of the lumbar joints: every muscle that crosses L5-S1 works on them.
+LUMBAR_COORDINATES = 'L5_S1_'
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,6 +100,7 @@ class LoadSolver:
         )
         self.muscle_names = tuple(muscle.name for muscle in model.source.muscles)
         self.coordinate_names = tuple(names[k] for k in self._balanced)
+        self.lumbar = tuple(name for name in names if name.startswith(LUMBAR_COORDINATES))
         self._table = path_table(model, options.geodesic_wrapping)
         self._muscles = MuscleParameters.of(model.source.muscles)
         self._optimization = StaticOptimization(

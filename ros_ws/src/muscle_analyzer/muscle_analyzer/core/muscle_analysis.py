@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from human_model.report import SolveReport
+from muscle_analyzer.core.verdict import worst
 
 Array = NDArray[np.float64]
 
@@ -20,7 +21,9 @@ class MuscleAnalysis:
     Muscle forces and L5-S1 loads of n samples.
 
     A sample whose status is not `OK` is not good data.  What could not be computed is NaN; what
-    muscles that are too weak leave to the reserves is kept and marked.
+    muscles that are too weak leave to the reserves is kept and marked.  The L5-S1 load has
+    reports of its own, which are `OK` when muscles are too weak elsewhere than at the lumbar
+    joints, and the joint torques have statuses of their own, which do not hang on muscles.
 
     Attributes
     ----------
@@ -63,8 +66,13 @@ class MuscleAnalysis:
         Angle between the thoraces of the two skeletons [rad].
     hand_angle, foot_angle : (n, 2)
         Angles between hands and feet [right, left] of the two skeletons [rad].
+    torque_status : (n,) int
+        SolveStatus of torques and net moments.
+    spine_reports : tuple of SolveReport, n
+        Of the L5-S1 load.
     reports : tuple of SolveReport, n
-        Primal residual: balance of the torques [N m]; dual residual: stationarity.
+        Of the muscle forces.  Primal residual: balance of the torques [N m]; dual residual:
+        stationarity.
     """
 
     lift_id: str
@@ -91,6 +99,8 @@ class MuscleAnalysis:
     trunk_angle: Array
     hand_angle: Array
     foot_angle: Array
+    torque_status: NDArray[np.int64]
+    spine_reports: tuple[SolveReport, ...]
     reports: tuple[SolveReport, ...]
 
     def __len__(self) -> int:
@@ -125,4 +135,14 @@ class MuscleAnalysis:
     @property
     def report(self) -> SolveReport:
         """Report of the worst sample: highest status, then largest residual."""
-        return max(self.reports, key=lambda report: (int(report.status), report.primal_residual))
+        return worst(self.reports, self.time.tolist())
+
+    @property
+    def spine_status(self) -> NDArray[np.int64]:
+        """Status of the L5-S1 load of each sample (n,)."""
+        return np.array([int(report.status) for report in self.spine_reports], np.int64)
+
+    @property
+    def spine_report(self) -> SolveReport:
+        """Report of the worst L5-S1 load."""
+        return worst(self.spine_reports, self.time.tolist())

@@ -27,11 +27,15 @@ Array = NDArray[np.float64]
 #: the muscles of the lifting full-body model).
 MINIMUM_ACTIVATION = 0.01
 #: A coordinate is not balanced by its muscles when the reserve takes more than this share of the
-#: net moment of its joint (Hicks et al. 2015, J Biomech Eng 137:020905: 5 % of the net joint
-#: moment), all coordinates of the joint together, ...
+#: net moment of its joint, all coordinates of the joint together: half of what OpenSim's guide
+#: allows (page "Reserves and Residuals": peak reserve below 10 % of the peak joint torque), and
+#: the share of the external force that Hicks et al. 2015 (J Biomech Eng 137:020905, section
+#: 3.1.3) allow residual forces ...
 RESERVE_SHARE = 0.05
 #: ... and more than its unit torque, below which a share means nothing.
 RESERVE_CONTROL = 1.0
+#: So many coordinates or muscles are named in a report.
+NAMED = 3
 
 
 @dataclass(frozen=True)
@@ -236,10 +240,16 @@ class StaticOptimization:
                 f'{residual[j]:.3g} N m'
             )
         full = [self.muscle_names[i] for i in np.flatnonzero(at_upper)]
-        bound = f'at full activation: {", ".join(full)}' if full else ''
+        bound = f'at full activation: {_some(full)}' if full else ''
         if weak.any():
-            parts = [f'{self.coordinate_names[j]} by {reserve[j]:.1f} N m'
-                     for j in np.flatnonzero(weak)]
-            text = f'muscles too weak, reserves help {", ".join(parts)}'
+            order = sorted(np.flatnonzero(weak), key=lambda j: -abs(reserve[j]))
+            parts = [f'{self.coordinate_names[j]} by {reserve[j]:.1f} N m' for j in order]
+            text = f'muscles too weak, reserves help {_some(parts)}'
             return SolveStatus.MUSCLE_TOO_WEAK, f'{text}; {bound}' if bound else text
         return SolveStatus.OK, bound
+
+
+def _some(names: list[str]) -> str:
+    """Give the first names in words and the number of the others: a report is to be read."""
+    more = f' and {len(names) - NAMED} more' if len(names) > NAMED else ''
+    return ', '.join(names[:NAMED]) + more

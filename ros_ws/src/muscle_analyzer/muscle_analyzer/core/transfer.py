@@ -10,11 +10,16 @@ hang on them.
 Velocities and accelerations come from those of the skeleton's points by least squares
 (`map_rates`): the same way live and for a recorded lift, and without a filter, so without further
 delay.
+
+The coordinates of the sagittal skeleton say where it is in its own plane; its points and frames
+say where in the laboratory. A turn about the vertical and a shift lead from the one to the other.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -44,6 +49,27 @@ TOLERANCE = 1e-5
 MAX_ITERATIONS = 50
 # Points of a motion must be those of its skeleton, or its rates would belong to another motion.
 SAME_POINT = 1e-3
+
+
+class SkeletonState(NamedTuple):
+    """A skeleton at its coordinates, REP-103 axes; velocities and accelerations of its points.
+
+    Attributes
+    ----------
+    point, velocity, acceleration : (n_p, 3) arrays
+        m, m/s, m/s^2.
+    rotation : (n_f, 3, 3) array
+        World <- frame.
+    omega, alpha : (n_f, 3) arrays
+        Angular, rad/s and rad/s^2.
+    """
+
+    point: Array
+    velocity: Array
+    acceleration: Array
+    rotation: Array
+    omega: Array
+    alpha: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,11 +127,14 @@ class MotionTransfer:
         bounded = self._fitted & np.array([clamped[name] for name in names])
         self._lower = np.where(bounded, model.lower, -np.inf)
         self._upper = np.where(bounded, model.upper, np.inf)
-        self._which_points = _positions(points.names, POINTS)
-        self._which_frames = _positions(points.frame_names, FRAMES)
-        self._segments = skeleton.point_segment[self._which_points]
-        self._locals = np.ascontiguousarray(skeleton.point_local[self._which_points])
-        self._frame_segments = skeleton.frame_segment[self._which_frames]
+        which_points = _positions(points.names, POINTS)
+        self._segments = skeleton.point_segment[which_points]
+        self._locals = np.ascontiguousarray(skeleton.point_local[which_points])
+        self._frame_segments = skeleton.frame_segment[_positions(points.frame_names, FRAMES)]
+        self._sagittal = 'pelvis_rotation' not in skeleton.coordinates
+        self._pelvis = points.names.index('pelvis')
+        self._pelvis_frame = points.frame_names.index('pelvis')
+        self._columns = cache(_positions)
         self._upright_q = upright_coordinates(model)
         self._reference_weight = np.array(
             [0.0 if name.startswith(UNREFERENCED) else 1.0 / REFERENCE_SIGMA for name in names]
@@ -125,30 +154,50 @@ class MotionTransfer:
         TransferError
             If the motion is of another skeleton, or its points are not those of this subject.
         """
-        targets = self._targets(motion, sample)
+        if motion.coordinates != self.skeleton.coordinates:
+            raise TransferError(
+                f'motion of skeleton {motion.skeleton!r} does not have the coordinates of '
+                f'{self.skeleton.name!r}'
+            )
+        points = self.subject.points
+        place = motion.points[sample, self._columns(points.names, motion.point_names)]
+        frames = matrix_from_quaternion(
+            motion.frames[sample, self._columns(points.frame_names, motion.frame_names)]
+        )
+        own = _skeleton_state(
+            self.skeleton.tree,
+            motion.position[sample],
+            motion.velocity[sample],
+            motion.acceleration[sample],
+            self._segments,
+            self._locals,
+            self._frame_segments,
+        )
+        turn = self._turn(own, frames)
+        self._check_points(motion, sample, own, turn, place)
+        targets = self._targets(motion, sample, place, frames)
         tree = self.subject.multibody.tree
         start = self._upright(targets) if self._start is None else self._start
         fit = fit_pose(
             tree, targets, start, self._lower, self._upper, self._fitted, TOLERANCE, MAX_ITERATIONS
         )
-        point_v, frame_v, point_a, frame_a = _skeleton_rates(
-            self.skeleton.tree,
-            motion.position[sample].copy(),
-            motion.velocity[sample].copy(),
-            motion.acceleration[sample].copy(),
-            self._segments,
-            self._locals,
-            self._frame_segments,
-            ROS_FROM_OPENSIM,
-        )
         at_limit = (fit.q <= self._lower) | (fit.q >= self._upper)
+        axes = turn.T @ ROS_FROM_OPENSIM
         qd, qdd = map_rates(
             tree,
             targets,
             fit.q,
             self._fitted & ~at_limit,
-            Rates(point_v, frame_v, self._referenced(motion.velocity[sample])),
-            Rates(point_a, frame_a, self._referenced(motion.acceleration[sample])),
+            Rates(
+                own.velocity @ axes,
+                own.omega @ axes,
+                self._referenced(motion.velocity[sample]),
+            ),
+            Rates(
+                own.acceleration @ axes,
+                own.alpha @ axes,
+                self._referenced(motion.acceleration[sample]),
+            ),
         )
         self._start = fit.q if fit.converged else None
         distance, angle = self._remaining(targets, fit.q)
@@ -161,21 +210,23 @@ class MotionTransfer:
             frame_angle=angle,
             iterations=fit.iterations,
             converged=fit.converged,
-            at_limit=tuple(n for n, limited in zip(names, at_limit, strict=True) if limited),
+            at_limit=tuple(names[k] for k in np.flatnonzero(at_limit)),
         )
 
-    def _targets(self, motion: BodyMotion, sample: int) -> Targets:
-        if motion.coordinates != self.skeleton.coordinates:
-            raise TransferError(
-                f'motion of skeleton {motion.skeleton!r} does not have the coordinates of '
-                f'{self.skeleton.name!r}'
-            )
+    def _turn(self, own: SkeletonState, frames: Array) -> Array:
+        """Return the turn (3, 3) about the vertical that leads from the coordinates to the motion.
+
+        A 3D skeleton's coordinates hold its heading: nothing is left to turn.
+        """
+        if not self._sagittal:
+            return np.eye(3)
+        between = frames[self._pelvis_frame] @ own.rotation[self._pelvis_frame].T
+        heading = np.arctan2(between[1, 0] - between[0, 1], between[0, 0] + between[1, 1])
+        c, s = np.cos(heading), np.sin(heading)
+        return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+    def _targets(self, motion: BodyMotion, sample: int, place: Array, frames: Array) -> Targets:
         points = self.subject.points
-        place = motion.points[sample, _positions(points.names, motion.point_names)]
-        self._check_points(motion, sample, place)
-        frames = matrix_from_quaternion(
-            motion.frames[sample, _positions(points.frame_names, motion.frame_names)]
-        )
         return Targets(
             points.body,
             points.local,
@@ -192,14 +243,19 @@ class MotionTransfer:
         """Return the skeleton's values (n_q,) of the model's coordinates, 0 where it has none."""
         return np.where(self._same >= 0, values[self._same], 0.0)
 
-    def _check_points(self, motion: BodyMotion, sample: int, place: Array) -> None:
-        own = self.skeleton.point_array(motion.position[sample])[0, self._which_points]
-        off = np.linalg.norm(own - place, axis=1)
-        worst = int(np.argmax(off))
-        if off[worst] > SAME_POINT:
+    def _check_points(
+        self, motion: BodyMotion, sample: int, own: SkeletonState, turn: Array, place: Array
+    ) -> None:
+        off = own.point @ turn.T - place
+        if self._sagittal:
+            # Where in the laboratory the plane is; the height is a coordinate.
+            off[:, :2] -= off[self._pelvis, :2]
+        distance = np.linalg.norm(off, axis=1)
+        worst = int(np.argmax(distance))
+        if distance[worst] > SAME_POINT:
             raise TransferError(
                 f'motion at {motion.time[sample]:.3f} s: '
-                f'point {self.subject.points.names[worst]!r} is {off[worst]:.4f} m '
+                f'point {self.subject.points.names[worst]!r} is {distance[worst]:.4f} m '
                 'away from the skeleton of the subject'
             )
 
@@ -208,12 +264,10 @@ class MotionTransfer:
         model = self.subject.multibody
         start = np.where(self._fitted, self._upright_q, model.default)
         start = np.clip(start, self._lower, self._upper)
-        pelvis = self.subject.points.names.index('pelvis')
-        local = self.subject.points.local[pelvis]
-        place = targets.point[pelvis] - local
+        place = targets.point[self._pelvis] - self.subject.points.local[self._pelvis]
         for name, value in zip(('pelvis_tx', 'pelvis_ty', 'pelvis_tz'), place, strict=True):
             start[model.coordinate_index(name)] = value
-        forward = targets.frame[self.subject.points.frame_names.index('pelvis')][:, 0]
+        forward = targets.frame[self._pelvis_frame][:, 0]
         start[model.coordinate_index('pelvis_rotation')] = np.arctan2(-forward[2], forward[0])
         return start
 
@@ -244,7 +298,7 @@ def _positions(wanted: tuple[str, ...], names: tuple[str, ...]) -> NDArray[np.in
 
 
 @njit(cache=True)
-def _skeleton_rates(
+def _skeleton_state(
     tree: TreeArrays,
     q: Array,
     qd: Array,
@@ -252,28 +306,27 @@ def _skeleton_rates(
     segment: NDArray[np.int64],
     local: Array,
     frame_segment: NDArray[np.int64],
-    axes: Array,
-) -> tuple[Array, Array, Array, Array]:
-    """Return velocity of points and frames, then accelerations, in OpenSim's axes.
-
-    `axes` is the matrix that turns OpenSim's axes into the skeleton's.
-    """
-    rotation, _, _, omega, alpha, velocity, acceleration = body_motion(tree, q, qd, qdd)
+) -> SkeletonState:
+    rotation, origin, _, omega, alpha, velocity, acceleration = body_motion(tree, q, qd, qdd)
     n_p = segment.size
     n_f = frame_segment.size
+    x = np.empty((n_p, 3))
     v = np.empty((n_p, 3))
     a = np.empty((n_p, 3))
+    r = np.empty((n_f, 3, 3))
     w = np.empty((n_f, 3))
     al = np.empty((n_f, 3))
     for i in range(n_p):
         b = tree.segment_body[segment[i]]
         arm = rotation[b] @ (tree.segment_offset[segment[i]] + local[i])
+        x[i] = origin[b] + arm
         v[i] = velocity[b] + np.cross(omega[b], arm)
         a[i] = (
             acceleration[b] + np.cross(alpha[b], arm) + np.cross(omega[b], np.cross(omega[b], arm))
         )
     for i in range(n_f):
         b = tree.segment_body[frame_segment[i]]
+        r[i] = rotation[b]
         w[i] = omega[b]
         al[i] = alpha[b]
-    return v @ axes, w @ axes, a @ axes, al @ axes
+    return SkeletonState(x, v, a, r, w, al)
