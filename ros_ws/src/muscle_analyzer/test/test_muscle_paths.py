@@ -7,7 +7,6 @@ The reference files were made by ``reference/make_moment_arms.py``.
 """
 
 from functools import cache
-from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -19,13 +18,12 @@ from muscle_analyzer.core.multibody import compile_model
 from muscle_analyzer.core.muscle_path_table import path_table
 from muscle_analyzer.core.muscle_paths import body_wrenches, muscle_paths
 from muscle_analyzer.core.osim_reader import read_osim
+from muscle_analyzer.core.subject_model import lifting_model_path
 
 HERE = Path(__file__).parent
 SQUATS = HERE.parents[4] / 'shared' / 'data' / 'squats_bodyweight' / 'opensim46_reference'
 MODELS = {
-    'generic': Path(find_spec('Pose2Sim').submodule_search_locations[0])
-    / 'OpenSim_Setup'
-    / 'Model_Pose2Sim_muscles_flex.osim',
+    'generic': lifting_model_path(),
     'squats': SQUATS / 'lfb_subject4.osim',
 }
 CASES = [
