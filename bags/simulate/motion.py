@@ -219,6 +219,8 @@ class MotionBuilder:
             goal = Goal(hands, axis, point, mass, carried)
             wishes = _preferred(self.body, self._wishes[name])
             rough = self.body.posture(wishes, goal)
+            # The toes lie flat.
+            rough[[self.body.skeleton.index(f'mtp_angle_{side}') for side in SIDES]] = 0.0
             keys[name] = self.body.project(rough, hands)
         return keys
 

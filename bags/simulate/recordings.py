@@ -223,10 +223,10 @@ def _extras(task: Task, when: Phases, truth: SimulatedForces) -> dict[str, Any]:
 
 
 def _save_truth(bag: Path, fields: dict[str, Any], markers: PlacedMarkers) -> None:
-    """Write truth.npz; single precision but for time, which is enough for 1e-6 m and rad."""
+    """Write truth.npz; single precision for the big arrays, enough for 1e-6 m and rad."""
     small = {
         name: value.astype(np.float32)
-        if isinstance(value, np.ndarray) and value.dtype == np.float64 and name != 'time'
+        if value.dtype == np.float64 and value.ndim > 1
         else value
         for name, value in fields.items()
     }

@@ -69,6 +69,19 @@ def test_swapped_plates_as_option_are_refused(standing):
         align(standing.raw, standing.stature, standing.mass, options)
 
 
+def test_plate_option_takes_the_last_part_of_a_name(standing):
+    named = tuple(
+        Plate(f'ground_force_{i}', p.time, p.force, p.moment)
+        for i, p in enumerate(standing.raw.plates, 1)
+    )
+    raw = replace(standing.raw, plates=named)
+    options = ConventionOptions(plates={'1': 'right', 'ground_force_2': 'left'})
+    found = align(raw, standing.stature, standing.mass, options)
+    assert any('ground_force_1: right foot (option' in text for text in found.statements)
+    with pytest.raises(ConventionError, match="option names '3'; the file has"):
+        align(raw, standing.stature, standing.mass, ConventionOptions(plates={'3': 'left'}))
+
+
 def test_plate_between_the_feet_needs_the_option(standing):
     plate = standing.raw.plates[0]
     moment = plate.moment + np.cross((0.0, 0.125, 0.0), plate.force)

@@ -80,7 +80,7 @@ def bag(tmp_path_factory):
     path = tmp_path_factory.mktemp('play') / 'bag'
     time_s = np.arange(3000) / 1000.0
     force = np.stack((time_s, 2.0 * time_s, 300.0 + time_s), axis=1)
-    with BagWriter(path) as writer:
+    with BagWriter(path, compress=False) as writer:
         writer.topic('note', 'std_msgs/msg/String', transient_local=True)
         streams = [
             plate_stream(writer, START_TIME_NS, side, Plate(side, time_s, force, force))

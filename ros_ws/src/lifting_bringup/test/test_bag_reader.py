@@ -70,7 +70,7 @@ def test_cut_off_bag_gives_a_true_prefix_and_counts_what_is_lost(whole, tmp_path
         part = list(bag.raw_messages())
         loss = bag.loss
     assert part == complete[: len(part)]
-    # No more than one chunk (1 MiB, at most 140 bytes a message with index) may be lost to the cut.
+    # No more than one chunk of 1 MiB (over 100 bytes a message) may be lost to the cut.
     assert len(part) > share * len(complete) - 2**20 / 100
     assert loss is not None
     assert loss.messages_lost == len(complete) - len(part)

@@ -45,6 +45,15 @@ def _distance_to_foot(point: Array, heel: Array, toe: Array) -> Array:
     return np.asarray(np.linalg.norm(point - heel - share[:, None] * along, axis=1))
 
 
+def _named(plates: tuple[Plate, ...], name: str) -> str:
+    found = [p.name for p in plates if p.name == name or p.name.endswith(f'_{name}')]
+    if len(found) != 1:
+        raise ConventionError(
+            f'plates: option names {name!r}; the file has {[p.name for p in plates]}'
+        )
+    return found[0]
+
+
 def assign_plates(
     plates: tuple[Plate, ...],
     time: Array,
@@ -63,7 +72,8 @@ def assign_plates(
     markers : ndarray, shape (n, n_markers, 3)
         [m], graph axes.
     option : dict or None
-        Plate name to 'right' or 'left'; used where given, refused where the COP contradicts it.
+        Plate name, or its last part ('1' of 'ground_force_1'), to 'right' or 'left'; used where
+        given, refused where the COP contradicts it.
 
     Raises
     ------
@@ -72,11 +82,7 @@ def assign_plates(
     """
     feet: dict[str, list[Plate]] = {side: [] for side in SIDES}
     statements = []
-    for name in option or {}:
-        if name not in {p.name for p in plates}:
-            raise ConventionError(
-                f'plates: option names {name!r}; the file has {[p.name for p in plates]}'
-            )
+    wishes = {_named(plates, name): side for name, side in (option or {}).items()}
     for plate in plates:
         loaded = plate.force[:, 2] > LOADED
         if not np.any(loaded):
@@ -100,7 +106,7 @@ def assign_plates(
         far = SIDES[1 - SIDES.index(near)]
         told = ', '.join(f'{side} foot {distance[side] * 1e3:.0f} mm' for side in SIDES)
         clear = distance[near] < _FOOT_REACH and distance[far] > _FOOT_RATIO * distance[near]
-        wanted = (option or {}).get(plate.name)
+        wanted = wishes.get(plate.name)
         if wanted is None and not clear:
             raise ConventionError(
                 f'plate {plate.name!r}: its centre of pressure is near no foot or near both '
