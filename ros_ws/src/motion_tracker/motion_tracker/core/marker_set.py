@@ -7,7 +7,8 @@ frame (REP-103 axes in the neutral posture, origin in the proximal joint) for th
 subject below; for another person each axis is scaled with the length or the three lengths (x y z)
 that ``scale_with`` names. Rows without a position get theirs from a static trial only. ``weight``
 is the weight of the squared distance in the fit: bony landmarks count twice as much as markers
-over muscle. ``tracking`` is ``no`` for markers that are used in the static trial only.
+over muscle, on the moving shoulder, or where the skin of the back slides. ``tracking`` is ``no`` for markers that are only known by name
+or used in the static trial only.
 """
 
 import csv

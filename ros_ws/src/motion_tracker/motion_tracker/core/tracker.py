@@ -119,7 +119,8 @@ class MotionTracker:
         self._end_known: float | None = None
         self._quiet: deque[float] = deque()
         self._mass_checked = False
-        self._unknown: set[str] = set()
+        #: Markers without a place in the model that need no notice (any more).
+        self._unknown = set(marker_set.names) if marker_set else set()
         self._notices: list[Output] = []
 
     @property
