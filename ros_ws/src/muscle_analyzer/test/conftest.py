@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from muscle_analyzer.core.exceptions import ModelFileError
 from muscle_analyzer.core.inverse_dynamics import add_force
 from muscle_analyzer.core.motion_derivatives import differentiate, smooth

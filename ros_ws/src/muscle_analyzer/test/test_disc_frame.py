@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from muscle_analyzer.core.disc_frame import (
     DEFAULT_OPTION,
     DiscOption,

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.interpolate import make_interp_spline
+
 from muscle_analyzer.core.exceptions import OsimFormatError
 from muscle_analyzer.core.functions import (
     constant,
@@ -16,7 +18,6 @@ from muscle_analyzer.core.functions import (
     polynomial,
     simm_spline,
 )
-from scipy.interpolate import make_interp_spline
 
 X = np.array([0.0, 0.17, 0.35, 0.6, 0.7, 1.1, 1.3])
 Y = np.array([0.0, 0.013, 0.023, 0.03, 0.033, 0.02, -0.01])

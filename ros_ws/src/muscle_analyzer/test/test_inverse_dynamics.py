@@ -4,6 +4,7 @@
 
 import numpy as np
 import pytest
+
 from muscle_analyzer.core.inverse_dynamics import (
     add_force,
     inverse_dynamics,

@@ -4,6 +4,7 @@
 
 import numpy as np
 import pytest
+
 from muscle_analyzer.core.kinematics import (
     body_jacobians,
     forward_kinematics,
@@ -67,7 +68,8 @@ def test_jacobians_are_derivatives_of_positions(name, request):
         after = forward_kinematics(model.tree, q + step, zero, zero)
         before = forward_kinematics(model.tree, q - step, zero, zero)
         slope = (after.position - before.position) / (2.0 * STEP)
-        spin = (after.rotation - before.rotation) / (2.0 * STEP) @ state.rotation.transpose(0, 2, 1)
+        turned = (after.rotation - before.rotation) / (2.0 * STEP)
+        spin = turned @ state.rotation.transpose(0, 2, 1)
         for b in range(len(model.body_names)):
             column = point_jacobian(jacobians[b], state.position[b])[:, k]
             np.testing.assert_allclose(column, slope[b], atol=1e-8)

@@ -4,6 +4,7 @@
 
 import numpy as np
 import pytest
+
 from muscle_analyzer.core.exceptions import InputArrayError
 from muscle_analyzer.core.motion_derivatives import differentiate, smooth
 

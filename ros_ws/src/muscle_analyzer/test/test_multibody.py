@@ -4,6 +4,7 @@
 
 import numpy as np
 import pytest
+
 from muscle_analyzer.core.exceptions import ModelCompilationError, UnknownNameError
 from muscle_analyzer.core.kinematics import coordinate_state
 from muscle_analyzer.core.multibody import compile_model

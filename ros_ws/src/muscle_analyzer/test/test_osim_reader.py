@@ -4,6 +4,7 @@
 
 import numpy as np
 import pytest
+
 from muscle_analyzer.core.exceptions import OsimFormatError, UnsupportedElementError
 from muscle_analyzer.core.osim_reader import read_osim
 from muscle_analyzer.core.osim_xml import body_fixed_xyz

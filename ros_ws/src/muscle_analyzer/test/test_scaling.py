@@ -4,6 +4,7 @@
 
 import numpy as np
 import pytest
+
 from muscle_analyzer.core.exceptions import ScalingError
 from muscle_analyzer.core.osim_reader import read_osim
 from muscle_analyzer.core.scaling import StrengthScaling, scale_model

@@ -3,7 +3,8 @@
 """Fits a tree's independent coordinates to points and orientations of bodies; compiled.
 
 Weighted least squares by a damped Gauss-Newton method (Levenberg 1944, Marquardt 1963) with
-bounds: a coordinate at its bound is left out of a step that would push it outwards.
+bounds: a coordinate at its bound is left out of a step that would push it outwards, and one that
+would cross its bound is stopped there while the others are solved for again.
 
 Where points say little about a coordinate (a straight elbow leaves the split of a turn between
 upper arm and forearm open), a weak pull towards a reference value decides, instead of noise.
@@ -167,22 +168,47 @@ def misfit_jacobian(tree: Tree, targets: Targets, state: BodyState) -> Array:
 
 
 @njit(cache=True)
-def _damped_step(normal: Array, gradient: Array, free: NDArray[np.bool_], damping: float) -> Array:
-    """Return the step (n_q,) of the free coordinates, zero for the others."""
-    index = np.flatnonzero(free)
-    n = index.size
-    matrix = np.empty((n, n))
-    right = np.empty(n)
-    for i in range(n):
-        right[i] = -gradient[index[i]]
-        for j in range(n):
-            matrix[i, j] = normal[index[i], index[j]]
-        matrix[i, i] += damping
-    solution = np.linalg.solve(matrix, right)
-    step = np.zeros(gradient.size)
-    for i in range(n):
-        step[index[i]] = solution[i]
-    return step
+def _bounded_step(
+    normal: Array,
+    gradient: Array,
+    free: NDArray[np.bool_],
+    damping: float,
+    lowest: Array,
+    highest: Array,
+) -> Array:
+    """Return the damped step (n_q,) between `lowest` and `highest`, zero where not free.
+
+    A coordinate whose step would leave its bounds is stopped there, and the others are solved for
+    again with that taken into account.
+    """
+    n_q = gradient.size
+    moving = free.copy()
+    step = np.zeros(n_q)
+    while True:
+        index = np.flatnonzero(moving)
+        n = index.size
+        if n == 0:
+            return step
+        matrix = np.empty((n, n))
+        right = np.empty(n)
+        for i in range(n):
+            right[i] = -gradient[index[i]]
+            for k in range(n_q):
+                if not moving[k]:
+                    right[i] -= normal[index[i], k] * step[k]
+            for j in range(n):
+                matrix[i, j] = normal[index[i], index[j]]
+            matrix[i, i] += damping
+        solution = np.linalg.solve(matrix, right)
+        stopped = False
+        for i in range(n):
+            k = index[i]
+            step[k] = min(max(solution[i], lowest[k]), highest[k])
+            if step[k] != solution[i]:
+                moving[k] = False
+                stopped = True
+        if not stopped:
+            return step
 
 
 @njit(cache=True)
@@ -243,8 +269,16 @@ def fit_pose(
             above = q[k] >= upper[k] and gradient[k] < 0.0
             free[k] = fitted[k] and not (below or above)
         while True:
-            step = _damped_step(normal, gradient, free, relative_damping * scale)
-            trial = np.minimum(np.maximum(q + step, lower), upper)
+            step = _bounded_step(
+                normal, gradient, free, relative_damping * scale, lower - q, upper - q
+            )
+            trial = q + step
+            for k in range(n_q):
+                # Exactly on the bound, which rounding may miss.
+                if step[k] == upper[k] - q[k]:
+                    trial[k] = upper[k]
+                elif step[k] == lower[k] - q[k]:
+                    trial[k] = lower[k]
             size = np.max(np.abs(trial - q))
             state = forward_kinematics(tree, trial, zero, zero)
             residual = misfit(targets, state)
@@ -304,7 +338,8 @@ def map_rates(
         at = 3 * (n_p + i)
         wanted[at : at + 3] = targets.frame_weight[i] * velocity.frame[i]
     right = jacobian.T @ wanted + pull * velocity.reference
-    rate = _damped_step(normal, -right, fitted, damping)
+    unbounded = np.full(n_q, np.inf)
+    rate = _bounded_step(normal, -right, fitted, damping, -unbounded, unbounded)
     # With zero coordinate accelerations the points' accelerations are J' q'.
     moving = forward_kinematics(tree, q, rate, zero)
     for i in range(n_p):
@@ -322,4 +357,4 @@ def map_rates(
         bias = moving.angular_acceleration[targets.frame_body[i]]
         wanted[at : at + 3] = targets.frame_weight[i] * (acceleration.frame[i] - bias)
     right = jacobian.T @ wanted + pull * acceleration.reference
-    return rate, _damped_step(normal, -right, fitted, damping)
+    return rate, _bounded_step(normal, -right, fitted, damping, -unbounded, unbounded)
