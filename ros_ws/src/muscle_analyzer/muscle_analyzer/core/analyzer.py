@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from human_model.motion import BodyMotion
+from human_model.named_subjects import named_subject, subject_names
 from human_model.skeleton import Skeleton
 from human_model.skeleton_2d import Skeleton2D
 from human_model.skeleton_3d import Skeleton3D
@@ -69,8 +70,7 @@ class MuscleAnalyzer:
         HumanModelError
             If the subject's measures cannot be used.
         """
-        if self._generic is None:
-            self._generic = read_osim(self.options.model_path or lifting_model_path())
+        self._generic = self._generic or self._read()
         skeleton = Skeleton3D.of(subject)
         upright = np.zeros(len(skeleton.coordinates))
         self._model = subject_model(
@@ -82,11 +82,25 @@ class MuscleAnalyzer:
         # Live and recorded 3D motion share all compiled functions: load them now.
         self._warm_up(skeleton)
 
+    def prepare(self) -> None:
+        """
+        Do what takes time and needs no subject: read the model, load the compiled functions.
+
+        Raises
+        ------
+        MuscleAnalyzerError
+            If the model cannot be read or an option cannot be used.
+        """
+        self.configure(named_subject(subject_names()[0]))
+        self._subject = None
+
+    def _read(self) -> OsimModel:
+        return read_osim(self.options.model_path or lifting_model_path())
+
     def _warm_up(self, skeleton: Skeleton) -> None:
         q = skeleton.standing()
         motion = skeleton.body_motion(0.0, q, np.zeros_like(q), np.zeros_like(q))
-        transfer, solver = self._stream('live', skeleton.name)
-        solver.solve(transfer.step(motion, 0), motion, 0)
+        self.joint_torques(self.analyze(motion), motion)
         self._streams = {}
 
     def _stream(self, source: str, skeleton: str) -> tuple[MotionTransfer, SampleSolver]:

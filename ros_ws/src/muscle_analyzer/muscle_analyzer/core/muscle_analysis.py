@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from human_model.report import SolveReport
+from human_model.report import SolveReport, SolveStatus
 from muscle_analyzer.core.verdict import worst
 
 Array = NDArray[np.float64]
@@ -146,3 +146,14 @@ class MuscleAnalysis:
     def spine_report(self) -> SolveReport:
         """Report of the worst L5-S1 load."""
         return worst(self.spine_reports, self.time.tolist())
+
+    @property
+    def good_spine_samples(self) -> int:
+        """Number of samples whose L5-S1 load is good data."""
+        return int(np.count_nonzero(self.spine_status == SolveStatus.OK))
+
+    @property
+    def peak_compression(self) -> float:
+        """Largest L5-S1 compression of the good samples [N]; NaN if there is none."""
+        good = self.compression[self.spine_status == SolveStatus.OK]
+        return float(good.max()) if good.size else float('nan')

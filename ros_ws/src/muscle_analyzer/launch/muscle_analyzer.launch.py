@@ -1,0 +1,32 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Starts the muscle analyzer of one station; configure and activate it with `ros2 lifecycle`."""
+
+from pathlib import Path
+
+from ament_index_python.packages import get_package_share_directory
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import LifecycleNode
+
+from launch import LaunchDescription
+
+
+def generate_launch_description() -> LaunchDescription:
+    """Return the launch description."""
+    parameters = Path(get_package_share_directory('muscle_analyzer')) / 'config'
+    return LaunchDescription(
+        [
+            DeclareLaunchArgument(
+                'station', default_value='station_1', description='Namespace of the station'
+            ),
+            LifecycleNode(
+                package='muscle_analyzer',
+                executable='muscle_analyzer_node',
+                name='muscle_analyzer',
+                namespace=LaunchConfiguration('station'),
+                parameters=[str(parameters / 'muscle_analyzer.yaml')],
+                output='screen',
+            ),
+        ]
+    )

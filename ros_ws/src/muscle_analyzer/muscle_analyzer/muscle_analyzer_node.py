@@ -1,0 +1,155 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Lifecycle node round the muscle analyzer: motion in, muscle forces and L5-S1 loads out."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from pathlib import Path
+from typing import Final
+
+from geometry_msgs.msg import WrenchStamped
+from lifting_interfaces.msg import (
+    BodyMotion,
+    JointTorques,
+    MeasuredLift,
+    MuscleAnalysis,
+    PredictedLift,
+    SpineLoad,
+    Task,
+)
+from lifting_interfaces.msg import Subject as SubjectMsg
+from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
+
+from human_model.errors import HumanModelError
+from human_model.motion import BodyMotion as Motion
+from human_model.subject import Subject
+from lifting_node import qos
+from lifting_node.pipeline_node import PipelineNode
+from lifting_node.run import run_node
+from muscle_analyzer import conversions
+from muscle_analyzer.core.analyzer import MuscleAnalyzer, MuscleAnalyzerOptions
+from muscle_analyzer.core.exceptions import MuscleAnalyzerError
+from muscle_analyzer.core.muscle_analysis import MuscleAnalysis as Analysis
+from muscle_analyzer.core.scaling import StrengthScaling
+
+WAITING_LIFTS: Final = 100
+"""Lifts kept until their person is known and the node is active."""
+
+
+class MuscleAnalyzerNode(PipelineNode):
+    """Analyses live motion and whole lifts of one station; the namespace is the station."""
+
+    PACKAGE = 'muscle_analyzer'
+    INPUT_ERRORS = (MuscleAnalyzerError, HumanModelError)
+
+    def build(self) -> None:
+        """Read the model, load compiled functions; create publishers and subscriptions."""
+        values = dict(self.values)
+        model = values.pop('model')
+        self.analyzer = MuscleAnalyzer(
+            MuscleAnalyzerOptions(
+                model_path=Path(model) if model else None,
+                strength=StrengthScaling(values.pop('strength')),
+                **values,
+            )
+        )
+        self.analyzer.prepare()
+        self._subject: Subject | None = None
+        self._box_mass = float('nan')
+        self._waiting: OrderedDict[tuple[str, str], MeasuredLift | PredictedLift] = OrderedDict()
+        self._muscles = self.advertise(MuscleAnalysis, 'muscle_analysis', qos.FRAMES)
+        self._spine = self.advertise(SpineLoad, 'spine_load', qos.FRAMES)
+        self._torques = self.advertise(JointTorques, 'joint_torques', qos.FRAMES)
+        self._reaction = self.advertise(WrenchStamped, 'l5_s1/reaction', qos.FRAMES)
+        self.subscribe(SubjectMsg, 'subject', self._on_subject, qos.LATCHED)
+        self.subscribe(Task, 'task', self._on_task, qos.LATCHED)
+        self.subscribe(BodyMotion, 'body_motion', self._on_body_motion, qos.FRAMES)
+        self.subscribe(MeasuredLift, 'measured_lift', self._on_measured_lift, qos.RESULTS)
+        self.subscribe(PredictedLift, 'predicted_lift', self._on_predicted_lift, qos.RESULTS)
+
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Start publishing, and analyse the lifts that came before."""
+        result = super().on_activate(state)
+        self._analyze_waiting()
+        return result
+
+    def _on_subject(self, message: SubjectMsg) -> None:
+        subject = conversions.subject_from_msg(message)
+        self._subject = None
+        self.analyzer.configure(subject)
+        self._subject = subject
+        self._analyze_waiting()
+
+    def _on_task(self, message: Task) -> None:
+        self._box_mass = message.box_mass
+
+    def _on_body_motion(self, message: BodyMotion) -> None:
+        if self._subject is None or not self.active:
+            self.counts['samples before the person or while not active'] += 1
+            return
+        motion = conversions.motion_from_msg(message)
+        mass = conversions.mass_in_hands(motion, self._box_mass)
+        analysis = self._analyze(message, motion, '', 'live', mass)
+        self.counts['live samples'] += len(analysis)
+        self.counts['live samples with good L5-S1 load'] += analysis.good_spine_samples
+        for reaction in conversions.reactions_to_msg(analysis):
+            self._reaction.publish(reaction)
+
+    def _on_measured_lift(self, message: MeasuredLift) -> None:
+        self._wait('measured', message)
+
+    def _on_predicted_lift(self, message: PredictedLift) -> None:
+        if message.report.status != 0:
+            self.counts['failed predictions'] += 1
+            return
+        self._wait('predicted', message)
+
+    def _wait(self, source: str, message: MeasuredLift | PredictedLift) -> None:
+        self._waiting[source, message.lift_id] = message
+        while len(self._waiting) > WAITING_LIFTS:
+            (kind, lift_id), _ = self._waiting.popitem(last=False)
+            self.report_error(f'{kind}_lift {lift_id}: its person did not come, dropped')
+        self._analyze_waiting()
+
+    def _analyze_waiting(self) -> None:
+        """Analyse the lifts of the person that is known; those of others go on waiting."""
+        if self._subject is None or not self.active:
+            return
+        person = self._subject.pseudonym
+        for key in [key for key, lift in self._waiting.items() if lift.subject == person]:
+            lift = self._waiting.pop(key)
+            try:
+                motion = conversions.motion_from_msg(lift.motion)
+                analysis = self._analyze(
+                    lift.motion, motion, lift.lift_id, key[0], lift.box_mass
+                )
+            except self.INPUT_ERRORS as error:
+                self.report_error(f'{key[0]}_lift {lift.lift_id}: {error}')
+                continue
+            self.get_logger().info(
+                f'{lift.lift_id} {key[0]}: peak L5-S1 compression '
+                f'{analysis.peak_compression:.0f} N; {analysis.good_spine_samples} of '
+                f'{len(analysis)} samples good; {analysis.spine_report.message}'
+            )
+
+    def _analyze(
+        self, message: BodyMotion, motion: Motion, lift_id: str, source: str, box_mass: float
+    ) -> Analysis:
+        """Analyse a block, publish all of it and return it."""
+        quality = conversions.quality_from_msg(message)
+        analysis = self.analyzer.analyze(motion, lift_id, source, quality.status)
+        torques = self.analyzer.joint_torques(analysis, motion)
+        self._spine.publish(conversions.spine_load_to_msg(analysis, box_mass))
+        self._torques.publish(conversions.torques_to_msg(torques))
+        self._muscles.publish(conversions.analysis_to_msg(analysis))
+        return analysis
+
+
+def main(args: list[str] | None = None) -> None:
+    """Run the node."""
+    run_node(MuscleAnalyzerNode, args)
+
+
+if __name__ == '__main__':
+    main()
