@@ -11,13 +11,12 @@ motion is solved again, a few times.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.linalg import solve_banded
-from scipy.signal import butter, sosfiltfilt
-
 from bags.simulate.forces import GRAVITY, whole_wrench
 from bags.simulate.motion import SOLVE_RATE, MotionBuilder, SimulatedMotion
 from bags.simulate.tasks import Task
+from numpy.typing import NDArray
+from scipy.linalg import solve_banded
+from scipy.signal import butter, sosfiltfilt
 
 Array = NDArray[np.float64]
 

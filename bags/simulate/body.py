@@ -8,16 +8,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from human_model import compiled
-from human_model.named_subjects import named_subject
-from human_model.skeleton_3d import Skeleton3D
+from bags.simulate.tasks import Stage
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation
 
-from bags.simulate.tasks import Stage
+from human_model import compiled
+from human_model.named_subjects import named_subject
+from human_model.skeleton_3d import Skeleton3D
 
 Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
 
 SIDES = ('r', 'l')
 # Lever [m] of the second point that holds the direction of the grip.
@@ -28,7 +29,15 @@ _SOFT_KNEE = 0.24
 _TOLERANCE = 1e-10
 # How far a joint may deviate before it costs as much as another [rad], [m]: pelvis freely,
 # spine and wrist reluctantly. Chosen.
-_EASE = {'pelvis': 1.0, 'knee': 0.15, 'lumbar': 0.3, 'thorax': 0.2, 'wrist': 0.15, 'pro_sup': 0.3, 'arm': 0.5}
+_EASE = {
+    'pelvis': 1.0,
+    'knee': 0.15,
+    'lumbar': 0.3,
+    'thorax': 0.2,
+    'wrist': 0.15,
+    'pro_sup': 0.3,
+    'arm': 0.5,
+}
 
 
 @dataclass(frozen=True)
@@ -90,11 +99,13 @@ class Body:
         self.feet_rotation = [
             Rotation.from_euler('z', sign * stage.toe_out).as_matrix() for sign in (-1.0, 1.0)
         ]
-        self.ankles = np.array([(0.0, -half, lengths['ankle_height']), (0.0, half, lengths['ankle_height'])])
+        self.ankles = np.array(
+            [(0.0, -half, lengths['ankle_height']), (0.0, half, lengths['ankle_height'])]
+        )
         self._foot_targets = np.concatenate(
             [self.ankles[i] + sole @ self.feet_rotation[i].T for i in range(2)]
         )
-        self._mass_segments = np.arange(len(self.skeleton.segments))
+        self._mass_segments = np.arange(len(self.skeleton.segments), dtype=np.int64)
         self._mass_local = np.array(self.skeleton.parameters.com)
         self._mass_share = self.skeleton.parameters.mass / self.skeleton.total_mass
         names = self.skeleton.coordinates
@@ -110,7 +121,7 @@ class Body:
         local = np.array([back + share * (front - back), 0.0, -lengths['ankle_height']])
         return np.stack([self.ankles[i] + self.feet_rotation[i] @ local for i in range(2)])
 
-    def _points(self, q: Array, segments: Array, local: Array) -> tuple[Array, Array]:
+    def _points(self, q: Array, segments: IntArray, local: Array) -> tuple[Array, Array]:
         position, jacobian = compiled.points_and_jacobian(
             self.skeleton.tree, q, segments, np.ascontiguousarray(local)
         )

@@ -17,14 +17,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from human_model import compiled
-from human_model.skeleton import ExternalForce
-from numpy.typing import NDArray
-
 from bags.simulate.body import Body
 from bags.simulate.motion import SimulatedMotion, grips
 from bags.simulate.profiles import quintic
 from bags.simulate.tasks import Stage
+from numpy.typing import NDArray
+
+from human_model import compiled
+from human_model.skeleton import ExternalForce
 
 Array = NDArray[np.float64]
 
@@ -74,7 +74,7 @@ def hand_forces(motion: SimulatedMotion, time: Array) -> tuple[Array, Array]:
     task, when = motion.task, motion.phases
     box, acceleration = (np.asarray(motion.box(time, nu=k)) for k in (0, 2))
     mass = task.box_mass
-    depth, width, height = task.box_size
+    depth, width, _ = task.box_size
     # Uniform cuboid about its vertical.
     inertia = mass / 12.0 * (depth**2 + width**2)
     force = mass * acceleration[:, :3]
@@ -178,9 +178,7 @@ class GroundSplit:
         return float(share), float(load)
 
 
-def whole_wrench(
-    body: Body, motion: SimulatedMotion, time: Array
-) -> tuple[Array, Array]:
+def whole_wrench(body: Body, motion: SimulatedMotion, time: Array) -> tuple[Array, Array]:
     """Return force and moment about the origin (n, 3) of the ground on person with box."""
     states = [np.ascontiguousarray(motion.coordinates(time, nu=k)) for k in range(3)]
     hand_force, hand_moment = hand_forces(motion, time)
@@ -188,15 +186,14 @@ def whole_wrench(
     force, moment = np.empty((time.size, 3)), np.empty((time.size, 3))
     for i in range(time.size):
         loads = _hand_loads(hand_force[i], place[i], hand_moment[i])
-        residual = body.skeleton.inverse_dynamics(*(state[i] for state in states), loads)
+        residual = body.skeleton.inverse_dynamics(states[0][i], states[1][i], states[2][i], loads)
         force[i], moment[i] = ground_wrench(body, states[0][i], residual)
     return force, moment
 
 
 def _hand_loads(force: Array, place: Array, moment: Array) -> list[ExternalForce]:
     return [
-        ExternalForce(f'hand_{side}', force[k], place[k], moment[k])
-        for k, side in enumerate('rl')
+        ExternalForce(f'hand_{side}', force[k], place[k], moment[k]) for k, side in enumerate('rl')
     ]
 
 
@@ -223,7 +220,6 @@ def simulate_forces(
     torque = np.empty_like(position)
     whole_force, whole_moment = whole_wrench(body, motion, time)
     for i in range(n):
-        state = position[i], velocity[i], acceleration[i]
         loads = _hand_loads(hand_force[i], hand_place[i], hand_moment[i])
         height = float(skeleton.centre_of_mass(position[i])[2])
         ground[i], cop[i], free[i], _ = split(whole_force[i], whole_moment[i], height)
@@ -231,8 +227,17 @@ def simulate_forces(
             ExternalForce(f'foot_{side}', ground[i, k], cop[i, k], free[i, k])
             for k, side in enumerate('rl')
         ]
-        torque[i] = skeleton.inverse_dynamics(*state, loads)
+        torque[i] = skeleton.inverse_dynamics(position[i], velocity[i], acceleration[i], loads)
     return SimulatedForces(
-        time, position, velocity, acceleration, box, hand_force, hand_moment, ground, cop, free,
+        time,
+        position,
+        velocity,
+        acceleration,
+        box,
+        hand_force,
+        hand_moment,
+        ground,
+        cop,
+        free,
         torque,
     )

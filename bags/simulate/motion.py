@@ -10,13 +10,12 @@ from typing import Any
 
 import numpy as np
 import yaml
-from numpy.typing import NDArray
-from scipy.interpolate import BSpline, make_interp_spline
-from scipy.spatial.transform import Rotation
-
 from bags.simulate.body import SIDES, Body, Goal
 from bags.simulate.profiles import minimum_jerk, quintic, slow_wander
 from bags.simulate.tasks import Stage, Task
+from numpy.typing import NDArray
+from scipy.interpolate import BSpline, make_interp_spline
+from scipy.spatial.transform import Rotation
 
 Array = NDArray[np.float64]
 
@@ -128,7 +127,9 @@ def box_path(stage: Stage, task: Task, front_edge: float, time: Array) -> Array:
     """
     when = phases(task)
     depth, _, height = task.box_size
-    start = np.array([front_edge + task.gap_to_plates + depth / 2, 0.0, task.floor_gap + height / 2])
+    start = np.array(
+        [front_edge + task.gap_to_plates + depth / 2, 0.0, task.floor_gap + height / 2]
+    )
     end = np.array(task.end)
     top = end[2] + stage.clearance
     deceleration = stage.peak_deceleration
@@ -238,10 +239,13 @@ class MotionBuilder:
             up = minimum_jerk(time, when.lift_off - lead, when.rest - lead)
             first, middle, last = (keys[k][j] for k in ('grasp', 'middle', 'end'))
             # Parabola through grasp (0), middle (at the share of the way up) and end (1).
-            s = float(minimum_jerk(
-                np.array([when.lift_off + share * (when.peak - when.lift_off)]),
-                when.lift_off, when.rest,
-            )[0])
+            s = float(
+                minimum_jerk(
+                    np.array([when.lift_off + share * (when.peak - when.lift_off)]),
+                    when.lift_off,
+                    when.rest,
+                )[0]
+            )
             bend = (middle - first - s * (last - first)) / (s * (s - 1.0))
             lifted = first + up * (last - first) + bend * up * (up - 1.0)
             reference[:, j] = keys['stand'][j] + down * (lifted - keys['stand'][j])

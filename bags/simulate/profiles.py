@@ -44,7 +44,7 @@ def quintic(
 
 
 def slow_wander(time: Array, rng: np.random.Generator, amplitude: float) -> Array:
-    """Return a smooth aimless movement of a few tenths of a hertz; root mean square `amplitude`."""
+    """Return a smooth aimless movement below half a hertz; root mean square `amplitude`."""
     frequencies = rng.uniform(0.15, 0.45, 3)
     phases = rng.uniform(0.0, 2.0 * np.pi, 3)
     waves = np.sin(2.0 * np.pi * frequencies[:, None] * time + phases[:, None])

@@ -9,16 +9,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from human_model.subject import Calibration, Subject
-from lifting_bringup.bags.bag_writer import START_TIME_NS, BagWriter, in_order
-from lifting_bringup.bags.importer import marker_stream, plate_stream, pose_stream
-from lifting_bringup.bags.messages import MarkerCalibration, subject_message, task_message
-from lifting_bringup.bags.recording import Recording
-from lifting_bringup.bags.subject_file import SubjectEntry, TaskEntry
-from motion_tracker.core.calibration import calibrate
-from motion_tracker.core.marker_set import load_marker_set
-from numpy.typing import NDArray
-
 from bags.simulate.balance import balanced_motion
 from bags.simulate.body import Body
 from bags.simulate.forces import SimulatedForces, simulate_forces
@@ -32,14 +22,24 @@ from bags.simulate.sensors import (
     plate_readings,
 )
 from bags.simulate.tasks import Stage, Task
+from numpy.typing import NDArray
+
+from human_model.subject import Calibration, Subject
+from lifting_bringup.bags.bag_writer import START_TIME_NS, BagWriter, in_order
+from lifting_bringup.bags.importer import marker_stream, plate_stream, pose_stream
+from lifting_bringup.bags.messages import MarkerCalibration, subject_message, task_message
+from lifting_bringup.bags.recording import Recording
+from lifting_bringup.bags.subject_file import SubjectEntry, TaskEntry
+from motion_tracker.core.calibration import calibrate
+from motion_tracker.core.marker_set import load_marker_set
 
 Array = NDArray[np.float64]
 
 _SOURCE = (
     'SIMULATED, not measured: bags/simulate. Person, task and box after Zaman 2022; motion by '
     'key postures and inverse kinematics, forces by inverse dynamics, with simulated noise, '
-    'marker placement and soft-tissue movement (bags/README.md). Units m and N; x forward, y left, '
-    'z up; right plate under the right foot.'
+    'marker placement and soft-tissue movement (bags/README.md). Units m and N; x forward, '
+    'y left, z up; right plate under the right foot.'
 )
 _STATIC_SECONDS = 2.0
 _STATIC_SEED = 1000
@@ -112,9 +112,7 @@ class Session:
             _ALL, 'quiet standing for the marker calibration', 0.0, (0.0, 0.0, 0.0), 1,
             0.0, 0.0, 0.0, simulated=True,
         )  # fmt: skip
-        recording = Recording(
-            folder, self.markers.names, self.static_time, self.static, plates={}
-        )
+        recording = Recording(folder, self.markers.names, self.static_time, self.static, plates={})
         with BagWriter(folder / _ALL) as writer:
             streams = [
                 self._latched(writer, task, None),
@@ -225,9 +223,7 @@ def _extras(task: Task, when: Phases, truth: SimulatedForces) -> dict[str, Any]:
 def _save_truth(bag: Path, fields: dict[str, Any], markers: PlacedMarkers) -> None:
     """Write truth.npz; single precision for the big arrays, enough for 1e-6 m and rad."""
     small = {
-        name: value.astype(np.float32)
-        if value.dtype == np.float64 and value.ndim > 1
-        else value
+        name: value.astype(np.float32) if value.dtype == np.float64 and value.ndim > 1 else value
         for name, value in fields.items()
     }
     np.savez_compressed(

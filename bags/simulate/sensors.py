@@ -12,15 +12,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from human_model import compiled
-from lifting_bringup.bags.recording import Plate
-from motion_tracker.core.marker_set import load_marker_set
-from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
-
 from bags.simulate.body import Body
 from bags.simulate.forces import SimulatedForces
 from bags.simulate.tasks import Stage
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from human_model import compiled
+from lifting_bringup.bags.recording import Plate
+from motion_tracker.core.marker_set import load_marker_set
 
 Array = NDArray[np.float64]
 
@@ -73,7 +73,9 @@ def place_markers(stage: Stage, body: Body) -> PlacedMarkers:
     segments, local, slopes = [], [], []
     for name in marker_set.names:
         segment = marker_set.marker(name).segment
-        kind, side = (segment[:-2], segment[-2:]) if segment[-2:] in ('_r', '_l') else (segment, '')
+        kind, side = (
+            (segment[:-2], segment[-2:]) if segment[-2:] in ('_r', '_l') else (segment, '')
+        )
         size = settings['soft_tissue_mm_per_rad'][kind] * 1e-3
         own: dict[str, Array] = {}
         for joint in _NEIGHBOURS[kind]:
