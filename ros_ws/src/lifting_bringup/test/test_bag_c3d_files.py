@@ -9,6 +9,8 @@ import pytest
 from lifting_bringup.bags.alignment import ConventionOptions, align
 from lifting_bringup.bags.c3d_files import read_c3d
 from lifting_bringup.bags.exceptions import FileFormatError
+from lifting_bringup.bags.importer import ImportOptions, import_recording
+from lifting_bringup.bags.reader import BagReader
 
 RATE, RATIO = 100.0, 10
 # Corners of the plates in laboratory axes [mm]; the plate's z points down, as C3D plates have it.
@@ -104,3 +106,26 @@ def test_foreign_and_truncated_files(file, tmp_path):
     bad.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
     with pytest.raises(FileFormatError, match=r'bad\.c3d: is cut off: 200 frames'):
         read_c3d(bad)
+
+
+def test_import_keeps_plates_at_their_rate_and_emg(file, standing, tmp_path):
+    (tmp_path / 'subject.yaml').write_text(standing.subject_file)
+    report = import_recording(
+        ImportOptions(file, tmp_path / 'subject.yaml', tmp_path / 'bag', compress=False)
+    )
+    n = standing.raw.time.size
+    assert report.messages['force_plates/right/wrench'] == RATIO * n
+    with BagReader(tmp_path / 'bag') as bag:
+        blocks = [m for _, _, m in bag.messages(['/emg'])]
+    assert blocks[0].layout.dim[1].label == 'EMG_BFR [V]'
+    assert blocks[0].layout.dim[0].label == 'samples, 1000 Hz'
+    samples = np.concatenate([block.data for block in blocks])
+    expected = np.repeat(1e-3 * np.sin(40.0 * standing.raw.time), RATIO)
+    np.testing.assert_allclose(samples, expected, atol=1e-8)
+
+
+def test_forces_beside_a_c3d_file_are_refused(file, standing, tmp_path):
+    (tmp_path / 'subject.yaml').write_text(standing.subject_file)
+    options = ImportOptions(file, tmp_path / 'subject.yaml', tmp_path / 'bag', forces=file)
+    with pytest.raises(FileFormatError, match='brings its own forces'):
+        import_recording(options)

@@ -78,15 +78,16 @@ def load_streams(path: str | Path, namespace: str = '') -> BagStreams:
     UnreadableBagError
         No bag, or one without markers.
     """
-    prefix = f'/{namespace.strip("/")}' if namespace.strip('/') else ''
+    station = namespace.strip('/')
+    prefix = f'/{station}/' if station else '/'
     with BagReader(path) as bag:
         collector = _Collector(bag.path)
-        wanted = {
-            name: name.removeprefix('/').removeprefix(prefix.removeprefix('/')).lstrip('/')
-            for name in bag.topics
-            if name.startswith(prefix + '/') or (not prefix and not name.startswith('/'))
+        full = {name: '/' + name.lstrip('/') for name in bag.topics}
+        known = {
+            name: stored.removeprefix(prefix)
+            for name, stored in full.items()
+            if stored.startswith(prefix) and stored.removeprefix(prefix) in collector.topics
         }
-        known = {name: short for name, short in wanted.items() if short in collector.topics}
         for name, _, message in bag.messages(list(known)):
             collector.take(known[name], message)
         return collector.result(bag.loss)
