@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from muscle_analyzer.core.kinematics import BodyState
+from muscle_analyzer.core.kinematics import BodyState, cross, point_acceleration, turned
 from muscle_analyzer.core.multibody import Tree
 
 Array = NDArray[np.float64]
@@ -64,7 +64,7 @@ def inertial_wrenches(tree: Tree, state: BodyState) -> Array:
     n_b = tree.parent.size
     out = np.zeros((n_b, 6))
     arm = np.zeros(3)
-    turned = np.zeros((3, 3))
+    half = np.zeros((3, 3))
     inertia = np.zeros((3, 3))
     for b in range(1, n_b):
         rot = state.rotation[b]
@@ -74,19 +74,22 @@ def inertial_wrenches(tree: Tree, state: BodyState) -> Array:
             arm[i] = 0.0
             for j in range(3):
                 arm[i] += rot[i, j] * tree.mass_center[b, j]
-                turned[i, j] = 0.0
+                half[i, j] = 0.0
                 for k in range(3):
-                    turned[i, j] += rot[i, k] * tree.inertia[b, k, j]
+                    half[i, j] += rot[i, k] * tree.inertia[b, k, j]
         for i in range(3):
             for j in range(3):
                 inertia[i, j] = 0.0
                 for k in range(3):
-                    inertia[i, j] += turned[i, k] * rot[j, k]
-        spin = inertia @ w
-        rate = inertia @ al
-        swing = np.cross(w, np.cross(w, arm)) + np.cross(al, arm)
-        force = tree.mass[b] * (state.acceleration[b] + swing - tree.gravity)
-        add_force(out, b, force, state.position[b] + arm, rate + np.cross(w, spin))
+                    inertia[i, j] += half[i, k] * rot[j, k]
+        force = point_acceleration(state, b, tree.mass_center[b])
+        moment = cross(w, turned(inertia, w))
+        rate = turned(inertia, al)
+        for i in range(3):
+            force[i] = tree.mass[b] * (force[i] - tree.gravity[i])
+            moment[i] += rate[i]
+            arm[i] += state.position[b, i]
+        add_force(out, b, force, arm, moment)
     return out
 
 
@@ -133,5 +136,7 @@ def inverse_dynamics(tree: Tree, state: BodyState, external: Array) -> InverseDy
 def wrench_at(wrench: Array, point: Array) -> Array:
     """Return a wrench (6,) about the ground's origin as one about another point (3,), m."""
     out = wrench.copy()
-    out[:3] -= np.cross(point, wrench[3:])
+    moved = cross(point, wrench[3:])
+    for i in range(3):
+        out[i] -= moved[i]
     return out

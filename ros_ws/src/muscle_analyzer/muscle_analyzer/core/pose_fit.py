@@ -18,7 +18,13 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from muscle_analyzer.core.kinematics import BodyState, body_jacobians, forward_kinematics
+from muscle_analyzer.core.kinematics import (
+    BodyState,
+    body_jacobians,
+    forward_kinematics,
+    point_acceleration,
+    turned,
+)
 from muscle_analyzer.core.multibody import Tree
 
 Array = NDArray[np.float64]
@@ -109,12 +115,16 @@ class PoseFit(NamedTuple):
 @njit(cache=True)
 def _rotation_vector(target: Array, actual: Array, out: Array) -> None:
     """Write the turn that takes `target` to `actual`, ground axes, rad, into `out` (3,)."""
-    turn = actual @ target.T
-    out[0] = 0.5 * (turn[2, 1] - turn[1, 2])
-    out[1] = 0.5 * (turn[0, 2] - turn[2, 0])
-    out[2] = 0.5 * (turn[1, 0] - turn[0, 1])
+    cosine = -0.5
+    out[:] = 0.0
+    for k in range(3):
+        # Half the skew part of actual target^T, column by column, and half its trace.
+        out[0] += 0.5 * (actual[2, k] * target[1, k] - actual[1, k] * target[2, k])
+        out[1] += 0.5 * (actual[0, k] * target[2, k] - actual[2, k] * target[0, k])
+        out[2] += 0.5 * (actual[1, k] * target[0, k] - actual[0, k] * target[1, k])
+        for i in range(3):
+            cosine += 0.5 * actual[i, k] * target[i, k]
     sine = np.sqrt(out[0] ** 2 + out[1] ** 2 + out[2] ** 2)
-    cosine = 0.5 * (turn[0, 0] + turn[1, 1] + turn[2, 2] - 1.0)
     if sine > 1e-9:
         out *= np.arctan2(sine, cosine) / sine
 
@@ -133,11 +143,9 @@ def misfit(targets: Targets, state: BodyState) -> Array:
                 place += state.rotation[b, j, k] * targets.point_local[i, k]
             out[3 * i + j] = targets.point_weight[i] * (place - targets.point[i, j])
     for i in range(n_f):
-        at = 3 * (n_p + i)
-        _rotation_vector(
-            targets.frame[i], state.rotation[targets.frame_body[i]], out[at : at + 3]
-        )
-        out[at : at + 3] *= targets.frame_weight[i]
+        at = out[3 * (n_p + i) : 3 * (n_p + i) + 3]
+        _rotation_vector(targets.frame[i], state.rotation[targets.frame_body[i]], at)
+        at *= targets.frame_weight[i]
     return out
 
 
@@ -151,8 +159,7 @@ def misfit_jacobian(tree: Tree, targets: Targets, state: BodyState) -> Array:
     out = np.empty((3 * (n_p + n_f), n_q))
     for i in range(n_p):
         b = targets.point_body[i]
-        place = state.rotation[b] @ targets.point_local[i] + state.position[b]
-        x, y, z = place
+        x, y, z = turned(state.rotation[b], targets.point_local[i]) + state.position[b]
         weight = targets.point_weight[i]
         for k in range(n_q):
             wx, wy, wz = jacobian[b, 0, k], jacobian[b, 1, k], jacobian[b, 2, k]
@@ -165,6 +172,32 @@ def misfit_jacobian(tree: Tree, targets: Targets, state: BodyState) -> Array:
             for k in range(n_q):
                 out[3 * (n_p + i) + j, k] = targets.frame_weight[i] * jacobian[b, j, k]
     return out
+
+
+@njit(cache=True)
+def _solve_positive(matrix: Array, right: Array) -> Array:
+    """Solve a positive definite system by Cholesky's method; NaN if it is not. Changes both."""
+    n = right.size
+    for j in range(n):
+        for k in range(j):
+            matrix[j, j] -= matrix[j, k] * matrix[j, k]
+        if not matrix[j, j] > 0.0:
+            right[:] = np.nan
+            return right
+        matrix[j, j] = np.sqrt(matrix[j, j])
+        for i in range(j + 1, n):
+            for k in range(j):
+                matrix[i, j] -= matrix[i, k] * matrix[j, k]
+            matrix[i, j] /= matrix[j, j]
+    for i in range(n):
+        for k in range(i):
+            right[i] -= matrix[i, k] * right[k]
+        right[i] /= matrix[i, i]
+    for i in range(n - 1, -1, -1):
+        for k in range(i + 1, n):
+            right[i] -= matrix[k, i] * right[k]
+        right[i] /= matrix[i, i]
+    return right
 
 
 @njit(cache=True)
@@ -199,7 +232,7 @@ def _bounded_step(
             for j in range(n):
                 matrix[i, j] = normal[index[i], index[j]]
             matrix[i, i] += damping
-        solution = np.linalg.solve(matrix, right)
+        solution = _solve_positive(matrix, right)
         stopped = False
         for i in range(n):
             k = index[i]
@@ -285,6 +318,8 @@ def fit_pose(
             trial_cost = _cost(targets, residual, trial)
             if trial_cost <= cost or size < tolerance:
                 break
+            if not np.isfinite(relative_damping):
+                return PoseFit(q, iteration, cost, size, False)
             relative_damping *= _DAMPING_UP
         relative_damping = max(relative_damping * _DAMPING_DOWN, _SMALLEST_DAMPING)
         if trial_cost <= cost:
@@ -343,14 +378,7 @@ def map_rates(
     # With zero coordinate accelerations the points' accelerations are J' q'.
     moving = forward_kinematics(tree, q, rate, zero)
     for i in range(n_p):
-        b = targets.point_body[i]
-        arm = moving.rotation[b] @ targets.point_local[i]
-        w = moving.angular_velocity[b]
-        bias = (
-            moving.acceleration[b]
-            + np.cross(moving.angular_acceleration[b], arm)
-            + np.cross(w, np.cross(w, arm))
-        )
+        bias = point_acceleration(moving, targets.point_body[i], targets.point_local[i])
         wanted[3 * i : 3 * i + 3] = targets.point_weight[i] * (acceleration.point[i] - bias)
     for i in range(n_f):
         at = 3 * (n_p + i)
