@@ -73,6 +73,10 @@ class LiveView:
             time = '       ' if math.isnan(line.time) else f'{line.time:6.2f}s'
             self.console.print(Text(f'{time}  ', style='dim') + Text(line.text, _STYLE[line.kind]))
 
+    def warn(self, text: str) -> None:
+        """Print a warning that belongs to no instant."""
+        self.add([Line(math.nan, text, Kind.WARNING)])
+
     def refresh(self) -> None:
         """Draw the gauges anew."""
         if self.console.is_terminal:

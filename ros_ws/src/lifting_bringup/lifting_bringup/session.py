@@ -21,7 +21,7 @@ from injury_monitor.core.limits import limits_for
 from lifting_bringup.bags.reader import BagReader
 from lifting_bringup.graph import Graph
 from lifting_bringup.graph_errors import SessionError
-from lifting_bringup.live_state import FOLLOWED, Kind, Line, LiveState
+from lifting_bringup.live_state import FOLLOWED, LiveState
 from lifting_bringup.live_view import LiveView
 from lifting_bringup.node_process import NodeProcess, start_module
 from lifting_node import qos
@@ -138,6 +138,12 @@ def summarise(path: Path) -> BagSummary:
         )
 
 
+def gauge_limits(summary: BagSummary) -> dict[str, float]:
+    """Return the limits [N] that the gauges of the live view show."""
+    limits = limits_for(summary.lifts_per_day)
+    return {'compression': limits.compression_action.value, 'shear': limits.shear.value}
+
+
 def run_online(options: RunOptions, say: Callable[[str], None] = print) -> RunReport:
     """Run a recording through the graph.
 
@@ -232,15 +238,7 @@ class _Session:
         self._executor = executor
         self._graph = graph
         self.state = LiveState(summary.start)
-        limits = limits_for(summary.lifts_per_day)
-        self._view = LiveView(
-            self.state,
-            summary.duration,
-            {
-                'compression': limits.compression_action.value,
-                'shear': limits.shear.value,
-            },
-        )
+        self._view = LiveView(self.state, summary.duration, gauge_limits(summary))
         self._last = time.monotonic()
         for topic, message_type in FOLLOWED.items():
             profile = _QOS.get(topic, qos.RESULTS)
@@ -274,7 +272,7 @@ class _Session:
                 player.check()
             response = self._call(Trigger, 'motion_tracker/flush', Trigger.Request())
             if not response.success:
-                self._view.add([Line(float('nan'), response.message, Kind.WARNING)])
+                self._view.warn(response.message)
             deadline = time.monotonic() + self._options.settle_timeout
             while not (self.state.complete and time.monotonic() - self._last > QUIET):
                 self._check([recorder])
@@ -286,8 +284,7 @@ class _Session:
                         f'{self._options.settle_timeout:g} s'
                     )
             if not self.state.lifts_ended:
-                text = 'no lift found in this recording: see the criteria of motion_tracker'
-                self._view.add([Line(float('nan'), text, Kind.WARNING)])
+                self._view.warn('no lift found: nothing rose as motion_tracker asks for')
 
     def _check(self, processes: list[NodeProcess]) -> None:
         self._graph.check()
