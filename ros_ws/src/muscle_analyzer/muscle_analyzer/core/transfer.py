@@ -44,6 +44,9 @@ HELD_COORDINATES = ('neck_flexion', 'neck_bending', 'neck_rotation')
 # skeleton's values decides what the points leave open. So many radians weigh as much as one sigma
 # of a point.
 REFERENCE_SIGMA = 0.2
+PELVIS_COORDINATES = (
+    'pelvis_tx', 'pelvis_ty', 'pelvis_tz', 'pelvis_tilt', 'pelvis_list', 'pelvis_rotation',
+)  # fmt: skip
 UNREFERENCED = ('pelvis_', 'L5_S1_', 'neck_')
 TOLERANCE = 1e-5
 MAX_ITERATIONS = 50
@@ -143,7 +146,7 @@ class MotionTransfer:
         self._start: Array | None = None
 
     def reset(self) -> None:
-        """Forget the last pose; the next fit starts from upright standing."""
+        """Forget the last pose; the next fit starts from the skeleton's coordinates."""
         self._start = None
 
     def step(self, motion: BodyMotion, sample: int = 0) -> TransferredPose:
@@ -177,7 +180,7 @@ class MotionTransfer:
         self._check_points(motion, sample, own, turn, place)
         targets = self._targets(motion, sample, place, frames)
         tree = self.subject.multibody.tree
-        start = self._upright(targets) if self._start is None else self._start
+        start = self._first(targets) if self._start is None else self._start
         fit = fit_pose(
             tree, targets, start, self._lower, self._upper, self._fitted, TOLERANCE, MAX_ITERATIONS
         )
@@ -259,17 +262,22 @@ class MotionTransfer:
                 'away from the skeleton of the subject'
             )
 
-    def _upright(self, targets: Targets) -> Array:
-        """Return upright standing at the place and with the heading of the target pelvis."""
+    def _first(self, targets: Targets) -> Array:
+        """Return a start without a sample before: the target pelvis, the skeleton's limbs."""
         model = self.subject.multibody
         start = np.where(self._fitted, self._upright_q, model.default)
-        start = np.clip(start, self._lower, self._upper)
+        start = np.where(self._reference_weight > 0.0, targets.reference, start)
         place = targets.point[self._pelvis] - self.subject.points.local[self._pelvis]
-        for name, value in zip(('pelvis_tx', 'pelvis_ty', 'pelvis_tz'), place, strict=True):
+        # Turns about z, x and y one after the other, each in the frame that the last one left.
+        frame = targets.frame[self._pelvis_frame]
+        turns = (
+            np.arctan2(-frame[0, 1], frame[1, 1]),
+            np.arcsin(np.clip(frame[2, 1], -1.0, 1.0)),
+            np.arctan2(-frame[2, 0], frame[2, 2]),
+        )
+        for name, value in zip(PELVIS_COORDINATES, (*place, *turns), strict=True):
             start[model.coordinate_index(name)] = value
-        forward = targets.frame[self._pelvis_frame][:, 0]
-        start[model.coordinate_index('pelvis_rotation')] = np.arctan2(-forward[2], forward[0])
-        return start
+        return np.asarray(np.clip(start, self._lower, self._upper))
 
     def _remaining(self, targets: Targets, q: Array) -> tuple[Array, Array]:
         zero = np.zeros(q.size)
