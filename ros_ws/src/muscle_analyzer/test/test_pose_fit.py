@@ -126,3 +126,10 @@ def test_reference_decides_what_points_leave_open(pendulum):
     fit = fit_pose(pendulum.tree, targets, np.zeros(2), -FREE, FREE, BOTH, 1e-12, 100)
     assert fit.q.sum() == pytest.approx(0.2, abs=1e-3)
     assert fit.q[0] - fit.q[1] == pytest.approx(0.2, abs=1e-6)
+
+
+def test_targets_that_are_not_numbers_end_as_not_converged(pendulum):
+    targets = targets_at(pendulum, np.array([0.7, -0.5]))
+    targets.point[0, 0] = np.nan
+    fit = fit_pose(pendulum.tree, targets, np.zeros(2), -FREE, FREE, BOTH, 1e-10, 50)
+    assert not fit.converged
