@@ -208,3 +208,13 @@ def test_generator_writes_the_same_again(tmp_path):
             message = next(m for _, _, m in bag.messages(['/markers']))
             rows.append([m.translation.z for m in message.markers])
     np.testing.assert_allclose(rows[0], rows[1], atol=2e-5)
+
+
+def test_recordings_belong_to_the_present_anthropometry(lift, skeleton):
+    """When the body tables change, the recordings are to be made anew."""
+    _, truth, _ = lift
+    lengths = dict(zip(truth['length_names'].tolist(), truth['lengths'].tolist(), strict=True))
+    assert lengths == pytest.approx(dict(skeleton.parameters.lengths), abs=1e-9)
+    points = skeleton.points(joined(truth, 'position')[100])
+    for k, name in enumerate(truth['point_names']):
+        np.testing.assert_allclose(truth['points'][100, k], points[str(name)], atol=1e-5)
