@@ -100,23 +100,25 @@ def _demo(options: argparse.Namespace) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
-    from lifting_bringup.results import write_report
+    from lifting_bringup.results import RunFacts, write_report
+    from lifting_bringup.session import RunOptions, run_online, summarise
 
     output = options.output or Path('out') / options.bag.stem
     if options.offline:
         from lifting_bringup.offline import run_offline
 
         results = run_offline(options.bag, output, options.station)
+        run = 'offline'
     else:
-        from lifting_bringup.session import RunOptions, run_online
-
         outcome = run_online(
             RunOptions(options.bag, output, rate=options.rate, station=options.station)
         )
         results = outcome.results
+        run = f'online at {options.rate:g} times real time'
         print(f'ready to play after {outcome.time_to_play:.1f} s')
     began = time.monotonic()
-    page = write_report(results, output / 'report.html')
+    facts = RunFacts(run, options.bag.name, summarise(options.bag).start)
+    page = write_report(results, output / 'report.html', facts)
     print(f'results {results}')
     print(f'report  {page} ({time.monotonic() - began:.1f} s)')
     return 0

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -52,13 +53,34 @@ _STAGES = (
 )
 
 
-def write_report(results: Path, page: Path, run: str = 'online') -> Path:
+@dataclass(frozen=True)
+class RunFacts:
+    """What the results file does not say of the run that made it.
+
+    Attributes
+    ----------
+    run : str
+        How it was computed.
+    recording : str
+        Name of the recording.
+    start : float
+        Stamp of the start of the recording [s]; NaN: the first live sample.
+    """
+
+    run: str = 'not stated'
+    recording: str = 'not stated'
+    start: float = math.nan
+
+
+def write_report(results: Path, page: Path, facts: RunFacts | None = None) -> Path:
     """Write the report page of a results file; return its path."""
-    return build_report(report_data(read_results(results), run), page)
+    return build_report(report_data(read_results(results), facts or RunFacts()), page)
 
 
-def report_data(results: Results, run: str) -> ReportData:
+def report_data(results: Results, facts: RunFacts) -> ReportData:
     """Return the data of the report page."""
+    if not math.isnan(facts.start):
+        results = replace(results, start=facts.start)
     remarks = [f'The results file is incomplete: {results.lost}.'] if results.lost else []
     person: Person | Missing
     try:
@@ -76,15 +98,15 @@ def report_data(results: Results, run: str) -> ReportData:
         if 'measured_lift' not in entry.single
     ]
     return ReportData(
-        header=_header(results, run),
+        header=_header(results, facts),
         lifts=lifts or Missing('no lift was found in this recording'),
-        alarms=tuple(_alarm(message, results.start) for message in results.alarms),
+        alarms=tuple(_alarm(message, results) for message in results.alarms),
         recording_quality=_recording_quality(results),
         remarks=tuple(remarks),
     )
 
 
-def _header(results: Results, run: str) -> Header:
+def _header(results: Results, facts: RunFacts) -> Header:
     subject, task = results.subject, results.task
     try:
         release = version('lifting_bringup')
@@ -98,14 +120,14 @@ def _header(results: Results, run: str) -> Header:
         age=subject.age,
         task=task.task_id,
         description=task.description,
-        recording=str(results.path),
+        recording=facts.recording,
         source=task.source,
         simulated=bool(task.simulated),
         box_mass=task.box_mass,
         lifts_per_day=task.lifts_per_day,
         lifts_per_minute=task.lifts_per_minute,
         duration_hours=task.duration_hours,
-        run=run,
+        run=facts.run,
         created=datetime.now(UTC).strftime('%Y-%m-%d %H:%M UTC'),
         version=release,
     )
@@ -279,9 +301,10 @@ def _quality(entry: LiftMessages) -> tuple[QualityRow, ...]:
     return tuple(rows)
 
 
-def _alarm(message: Any, start: float) -> AlarmRow:
+def _alarm(message: Any, results: Results) -> AlarmRow:
+    stamp = seconds(message.header.stamp)
     return AlarmRow(
-        stamp=seconds(message.header.stamp) - start,
+        stamp=stamp - results.start,
         alarm=message.alarm_id,
         previous_state=AlarmState(message.previous_state).name,
         state=AlarmState(message.state).name,
@@ -290,9 +313,21 @@ def _alarm(message: Any, start: float) -> AlarmRow:
         margin=message.margin,
         unit=message.unit,
         limit_source=message.limit_source,
-        lift_id=message.lift_id,
+        lift_id=message.lift_id or _lift_at(stamp, results),
         historical=bool(message.historical),
     )
+
+
+def _lift_at(stamp: float, results: Results) -> str:
+    """Return the lift during which something happened: live, its start is known too late."""
+    for lift_id, entry in results.lifts.items():
+        measured = entry.single.get('measured_lift')
+        if measured is None:
+            continue
+        since = stamp - seconds(measured.header.stamp)
+        if 0.0 <= since <= measured.duration:
+            return lift_id
+    return ''
 
 
 def _recording_quality(results: Results) -> tuple[QualityRow, ...] | Missing:

@@ -9,7 +9,9 @@ dropped: streams are reliable and keep all, so a subscriber that cannot follow s
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from array import array
+from collections.abc import Callable, Iterable
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -32,6 +34,8 @@ HISTORY_TYPES = ('lifting_interfaces/msg/AlarmEvent',)
 _CLOCK_TOPIC = '/clock'
 _EARLY_NS = 100_000
 _POLL_SECONDS = 0.02
+# Files up to this size are held in memory [bytes].
+_HELD_IN_MEMORY = 100_000_000
 
 
 def play(
@@ -82,7 +86,7 @@ class _Playback:
         if not self._publishers:
             raise PlaybackError(f'{bag.path}: no topic to play: {self._skipped}')
         self._counts = dict.fromkeys(self._publishers, 0)
-        self._lateness: list[int] = []
+        self._lateness = array('q')
         self._clock = (
             node.create_publisher(Clock, _CLOCK_TOPIC, 10) if options.clock_hz > 0.0 else None
         )
@@ -136,16 +140,16 @@ class _Playback:
         """Wait for subscribers, play all loops, wait for the acknowledgements."""
         self._wait_for_subscribers()
         begin = time.monotonic()
-        messages = self._load()
+        source = self._source()
         done = 0
         while not self._control.stopped and (self._options.loop == 0 or done < self._options.loop):
-            self._play_once(messages)
+            self._play_once(source())
             done += 1
         acknowledged = all(
             p.wait_for_all_acked(Duration(seconds=self._options.ack_timeout))
             for p in self._publishers.values()
         )
-        late = np.array(self._lateness or [0]) * 1e-9
+        late = np.array(self._lateness if self._lateness else [0]) * 1e-9
         return PlayReport(
             messages=dict(self._counts),
             skipped=self._skipped,
@@ -179,8 +183,11 @@ class _Playback:
                 )
             self._executor.spin_once(timeout_sec=_POLL_SECONDS)
 
-    def _load(self) -> list[tuple[str, int, bytes]]:
-        """Return latched messages from before the start, then all from the start on."""
+    def _source(self) -> Callable[[], Iterable[tuple[str, int, bytes]]]:
+        """Return what yields the messages of one turn: latched ones from before the start first.
+
+        A bag of ordinary size is held in memory, so that nothing is decompressed while it plays.
+        """
         start = self._bag.start_ns + round(self._options.start * 1e9)
         topics = list(self._publishers)
         latched = [
@@ -194,23 +201,28 @@ class _Playback:
             if stamp >= start:
                 break
             before[name] = (name, start, data)
-        body = list(self._bag.raw_messages(topics, start))
-        if not body:
+        if next(iter(self._bag.raw_messages(topics, start)), None) is None:
             raise PlaybackError(
                 f'{self._bag.path}: no message after {self._options.start:g} s '
                 f'(the bag is {(self._bag.end_ns - self._bag.start_ns) * 1e-9:g} s long)'
             )
-        return [*before.values(), *body]
+        if self._bag.size <= _HELD_IN_MEMORY:
+            held = [*before.values(), *self._bag.raw_messages(topics, start)]
+            return lambda: held
+        return lambda: chain(before.values(), self._bag.raw_messages(topics, start))
 
-    def _play_once(self, messages: list[tuple[str, int, bytes]]) -> None:
+    def _play_once(self, messages: Iterable[tuple[str, int, bytes]]) -> None:
         control, rate = self._control, self._options.rate
         bag_start = self._bag.start_ns
         publishers, counts, lateness = self._publishers, self._counts, self._lateness
         now = time.monotonic_ns
-        first = messages[0][1]
+        first = last = None
         tick = round(1e9 / self._options.clock_hz) if self._clock else 10_000_000
         epoch = next_tick = now()
         for name, stamp, data in messages:
+            if first is None:
+                first = stamp
+            last = stamp
             due = epoch + int((stamp - first) / rate)
             while True:
                 clock = now()
@@ -231,7 +243,8 @@ class _Playback:
             counts[name] += 1
             lateness.append(max(0, now() - due))
             control.position = (stamp - bag_start) * 1e-9
-        self._tick(messages[-1][1])
+        if last is not None:
+            self._tick(last)
 
     def _publish(self, publisher: Any, name: str, data: bytes) -> None:
         """Publish; when a subscriber's history is full, wait for it instead of dropping."""

@@ -110,6 +110,8 @@ class BagReader:
         Stamps of the first and last message [ns].
     loss : BagLoss or None
         None: the bag is whole.
+    size : int
+        Of its files [bytes].
 
     Raises
     ------
@@ -123,6 +125,7 @@ class BagReader:
         self.start_ns = 0
         self.end_ns = 0
         self.loss: BagLoss | None = None
+        self.size = 0
         self._stack = ExitStack()
         self._reader: Reader | None = None
         self._recovered: list[Recovered] = []
@@ -131,6 +134,7 @@ class BagReader:
     def __enter__(self) -> BagReader:
         """Open the bag."""
         files, metadata = self._files()
+        self.size = sum(file.stat().st_size for file in files)
         torn = [f for f in files if f.suffix == '.mcap' and not has_footer(f)]
         if torn:
             self._open_torn(files, metadata)
