@@ -1,34 +1,48 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Lifecycle node round the motion tracker: markers and plates in, body motion and lifts out."""
+"""Lifecycle node round the motion tracker: markers, plates and box in, motion and lifts out."""
 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any, Final
 
+import numpy as np
+import numpy.typing as npt
 from geometry_msgs.msg import PointStamped, PoseStamped, WrenchStamped
-from lifting_interfaces.msg import BodyMotion, LiftEvent, Markers, MeasuredLift, Subject, Task
+from lifting_interfaces.msg import BodyMotion, LiftEvent, Markers, MeasuredLift, Task
+from lifting_interfaces.msg import Subject as SubjectMsg
 from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 
 from human_model.errors import HumanModelError
+from human_model.subject import Subject
 from lifting_node import qos
+from lifting_node.conversions import subject_from_msg
 from lifting_node.pipeline_node import PipelineNode
 from lifting_node.run import run_node
 from motion_tracker import conversions
-from motion_tracker.core import tracked
+from motion_tracker.core.configuration import tracker_from
 from motion_tracker.core.errors import MotionTrackerError
 from motion_tracker.core.force_plates import SIDES
+from motion_tracker.core.tracked import DetectedEvent, Notice, Output, TrackedFrame
+from motion_tracker.core.tracked import MeasuredLift as TrackedLift
 from motion_tracker.core.tracker import MotionTracker
+from motion_tracker.core.warm_up import warm_up
 
-WAITING: Final = 100_000
-"""Input messages kept until subject and task are known."""
+#: Samples kept until person and task are known: 20 s of two 2500 Hz plates.
+EARLY_SAMPLES: Final = 100_000
 
-Step = Callable[[MotionTracker], list[tracked.Output]]
+#: A stamp this much before the newest one begins another recording [s].
+RESTART: Final = 5.0
+
+#: Marker frames between two reports of refused input.
+COUNT_FRAMES: Final = 500
+
+Feed = Callable[[MotionTracker], list[Output]]
 
 
 class MotionTrackerNode(PipelineNode):
@@ -38,116 +52,161 @@ class MotionTrackerNode(PipelineNode):
     INPUT_ERRORS = (MotionTrackerError, HumanModelError)
 
     def build(self) -> None:
-        """Create publishers and subscriptions; the tracker comes with subject and task."""
-        self._subject: Subject | None = None
-        self._task: Task | None = None
+        """Load the compiled functions; create publishers, subscriptions and the flush service."""
+        warm_up()
+        self._subject: tuple[Subject, str] | None = None
+        self._task: tuple[float, npt.NDArray[np.float64]] | None = None
         self._tracker: MotionTracker | None = None
-        self._waiting: deque[Step] = deque(maxlen=WAITING)
-        self._motion = self.advertise(BodyMotion, 'body_motion', qos.FRAMES)
+        self._early: deque[tuple[float, Feed]] = deque(maxlen=EARLY_SAMPLES)
+        self._newest = -float('inf')
+        self._lifts = 0
+        self._frames = 0
         self._joints = self.advertise(JointState, 'joint_states', qos.FRAMES)
-        self._total = self.advertise(WrenchStamped, 'ground_reaction/wrench', qos.FRAMES)
-        self._total_cop = self.advertise(PointStamped, 'ground_reaction/cop', qos.FRAMES)
-        self._cops = [
-            self.advertise(PointStamped, f'force_plates/{side}/cop', qos.FRAMES) for side in SIDES
-        ]
+        self._motion = self.advertise(BodyMotion, 'body_motion', qos.FRAMES)
         self._events = self.advertise(LiftEvent, 'lift_event', qos.RESULTS)
-        self._lifts = self.advertise(MeasuredLift, 'measured_lift', qos.RESULTS)
-        self.subscribe(Subject, 'subject', self._on_subject, qos.LATCHED)
+        self._measured = self.advertise(MeasuredLift, 'measured_lift', qos.RESULTS)
+        self._cop = [self.advertise(PointStamped, f'force_plates/{side}/cop', qos.FRAMES)
+                     for side in SIDES]
+        self.subscribe(SubjectMsg, 'subject', self._on_subject, qos.LATCHED)
         self.subscribe(Task, 'task', self._on_task, qos.LATCHED)
         self.subscribe(Markers, 'markers', self._on_markers, qos.FRAMES)
         self.subscribe(PoseStamped, 'box/pose', self._on_box, qos.FRAMES)
         for side in SIDES:
-            topic = f'force_plates/{side}/wrench'
-            self.subscribe(
-                WrenchStamped, topic, partial(self._on_wrench, side), qos.PLATES, raw=True
-            )
-        self._flush = self.create_service(Trigger, '~/flush', self._on_flush)
+            self.subscribe(WrenchStamped, f'force_plates/{side}/wrench',
+                           partial(self._on_wrench, side), qos.PLATES)
+        self._flush_service = self.create_service(Trigger, '~/flush', self._on_flush)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Drop the service with the rest."""
-        self.destroy_service(self._flush)
+        self.destroy_service(self._flush_service)
         return super().on_cleanup(state)
 
-    def _on_subject(self, message: Subject) -> None:
-        self._subject = message
-        self._begin()
+    def _on_subject(self, message: SubjectMsg) -> None:
+        subject = subject_from_msg(message)
+        known = self._subject
+        if known is not None and known[0].to_dict() == subject.to_dict() \
+                and known[1] == message.marker_set:
+            return
+        self._end_recording()
+        self._subject = (subject, message.marker_set)
+        self._work_off_early()
 
     def _on_task(self, message: Task) -> None:
-        self._task = message
-        self._begin()
-
-    def _begin(self) -> None:
-        """Begin a recording: a new tracker, fed with what has waited for it."""
-        if self._subject is None or self._task is None:
+        task = conversions.task_from_msg(message)
+        if self._task is not None and self._task[0] == task[0] \
+                and np.array_equal(self._task[1], task[1]):
             return
-        if self._tracker is not None:
-            self._publish(self._tracker.flush())
-        self._tracker = conversions.tracker_for(self._subject, self._task, self.values)
-        self.get_logger().info(f'marker model: {self._tracker.model_source}')
-        while self._waiting:
-            self._feed(self._waiting.popleft())
-
-    def _feed(self, step: Step) -> None:
-        if self._tracker is None:
-            self._waiting.append(step)
-            return
-        self._publish(step(self._tracker))
+        self._end_recording()
+        self._task = task
+        self._work_off_early()
 
     def _on_markers(self, message: Markers) -> None:
         stamp, names, positions = conversions.markers_from_msg(message)
-        self._feed(lambda tracker: tracker.push_markers(stamp, names, positions))
-
-    def _on_wrench(self, side: str, data: bytes) -> None:
-        stamp, force, moment = conversions.wrench_from_cdr(data)
-        self._feed(lambda tracker: tracker.push_wrench(side, stamp, force, moment))
+        self._frames += 1
+        if self._frames % COUNT_FRAMES == 0:
+            self._report_counts()
+        self._take(stamp, lambda tracker: tracker.push_markers(stamp, names, positions))
 
     def _on_box(self, message: PoseStamped) -> None:
         stamp, position = conversions.box_from_msg(message)
-        self._feed(lambda tracker: tracker.push_box(stamp, position))
+        self._take(stamp, lambda tracker: tracker.push_box(stamp, position))
 
-    def _on_flush(self, request: Trigger.Request, response: Trigger.Response) -> Any:
-        response.success = self._tracker is not None
-        if self._tracker is None:
-            response.message = 'nothing was tracked: no subject and task came'
-            return response
-        self._publish(self._tracker.flush())
-        lost = {name: count for name, count in self._tracker.counts.items() if count}
-        response.message = ', '.join(f'{name}: {count}' for name, count in lost.items())
+    def _on_wrench(self, side: str, message: WrenchStamped) -> None:
+        stamp, force, moment = conversions.wrench_from_msg(message)
+        self._take(stamp, lambda tracker: tracker.push_wrench(side, stamp, force, moment))
+
+    def _take(self, stamp: float, feed: Feed) -> None:
+        """Feed one sample to the tracker, or keep it until person and task are known."""
+        if not self.active:
+            self.counts['samples while not active'] += 1
+            return
+        if stamp < self._newest - RESTART:
+            self.get_logger().info('stamps went back: another recording begins')
+            self._end_recording()
+        self._newest = max(self._newest, stamp)
+        tracker = self._ready()
+        if tracker is None:
+            if len(self._early) == EARLY_SAMPLES:
+                self.counts['samples lost before person and task'] += 1
+            self._early.append((stamp, feed))
+            return
+        self._publish(feed(tracker))
+
+    def _ready(self) -> MotionTracker | None:
+        """Tracker of this recording, made when person and task are known."""
+        if self._tracker is None and self._subject is not None and self._task is not None:
+            subject, marker_set = self._subject
+            self._tracker = tracker_from(self.values, subject, marker_set, *self._task,
+                                         first_lift=self._lifts + 1)
+            self.get_logger().info(
+                f'{subject.pseudonym}: {len(self._tracker.model.names)} markers, '
+                f'{self._tracker.model_source}')
+            if self._tracker.inverse_kinematics.unseen:
+                self.get_logger().warning(
+                    'no marker sees ' + ', '.join(self._tracker.inverse_kinematics.unseen)
+                    + ': they stay at neutral')
+        return self._tracker
+
+    def _work_off_early(self) -> None:
+        tracker = self._ready()
+        while tracker is not None and self._early:
+            _, feed = self._early.popleft()
+            try:
+                self._publish(feed(tracker))
+            except self.INPUT_ERRORS as error:
+                self.report_error(str(error))
+
+    def _end_recording(self) -> None:
+        """Work off what waits and forget the tracker; the next sample makes a new one."""
+        if self._tracker is not None:
+            self._publish(self._tracker.flush())
+            self._report_counts()
+            self._lifts = self._tracker.lifts
+            self._tracker = None
+        self._newest = -float('inf')
+
+    def _on_flush(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        """End of the recording: nothing more will come."""
+        begun = self._tracker is not None
+        before = self._lifts
+        self._end_recording()
+        response.success = begun
+        response.message = (f'{self._lifts - before} lifts' if begun else
+                            'no recording under way: neither person, task nor samples came')
         return response
 
-    def _publish(self, outputs: list[tracked.Output]) -> None:
-        if not self.active:
-            self.counts['outputs while not active'] += len(outputs)
+    def _report_counts(self) -> None:
+        if self._tracker is None:
             return
-        for output in outputs:
-            match output:
-                case tracked.TrackedFrame():
-                    self._publish_frame(output)
-                case tracked.DetectedEvent():
-                    self._events.publish(conversions.event_to_msg(output))
-                case tracked.MeasuredLift():
-                    assert self._tracker is not None
-                    self._lifts.publish(
-                        conversions.measured_to_msg(output, self._tracker.subject)
-                    )
-                case tracked.Notice(information=True):
-                    self.get_logger().info(output.text)
-                case tracked.Notice():
-                    self.report_error(output.text)
+        for kind, number in self._tracker.counts.items():
+            if number > self.counts[kind]:
+                self.report_error(f'{kind}: {number - self.counts[kind]}')
+                self.counts[kind] = number
 
-    def _publish_frame(self, frame: tracked.TrackedFrame) -> None:
-        self.counts['frames'] += 1
-        if frame.status != 0:
-            self.counts[f'frames: {frame.status.name}'] += 1
-        self._motion.publish(conversions.frame_to_msg(frame))
-        self._joints.publish(conversions.frame_to_joint_state(frame))
-        self._total.publish(conversions.total_to_msg(frame))
-        time = float(frame.motion.time[0])
-        cops = (frame.total_cop, *frame.motion.cop[0])
-        for publisher, cop in zip((self._total_cop, *self._cops), cops, strict=True):
-            message = conversions.point_to_msg(time, cop)
-            if message is not None:
-                publisher.publish(message)
+    def _publish(self, outputs: Sequence[Output]) -> None:
+        for output in outputs:
+            self._publish_one(output)
+
+    def _publish_one(self, output: Any) -> None:
+        if isinstance(output, TrackedFrame):
+            self._joints.publish(conversions.joint_state_to_msg(output))
+            for side, publisher in enumerate(self._cop):
+                point = conversions.cop_to_msg(output, side)
+                if point is not None:
+                    publisher.publish(point)
+            self._motion.publish(conversions.body_motion_to_msg(output))
+            if output.message and not output.solution.ok:
+                self.report_error(f'frame not good: {output.message}')
+        elif isinstance(output, DetectedEvent):
+            self._events.publish(conversions.event_to_msg(output))
+            self.get_logger().info(f'{output.lift_id} {output.event.phase.name.lower()} at '
+                                   f'{output.event.time:.3f} s from the {output.detected_from}')
+        elif isinstance(output, TrackedLift) and self._subject is not None:
+            self._measured.publish(conversions.measured_lift_to_msg(output, self._subject[0]))
+            self.get_logger().info(f'{output.lift.lift_id}: {output.lift.report.message}')
+        elif isinstance(output, Notice):
+            logger = self.get_logger()
+            (logger.info if output.information else logger.warning)(output.text)
 
 
 def main(args: list[str] | None = None) -> None:

@@ -3,12 +3,12 @@
 """Marker calibration from a static trial: measured lengths, posture, marker offsets.
 
 The person stands upright, trunk and wrists straight, both feet flat: that defines the zero of the
-spine's, the wrists' and the toes' angles, which no landmark gives as well. (1) Joint centres follow from landmarks, segment
-lengths from joint centres; the heights of the trunk's joints keep the proportions of the
-anthropometric tables. (2) The posture is fitted to the joint centres and to the landmarks that
-have a place in the marker set; the height of the foot's landmarks over the ankle is not fitted,
-because the feet are known to be flat. (3) Every tracking marker gets the place on its segment
-where it was seen in that posture.
+spine's, the wrists' and the toes' angles, which no landmark gives as well. (1) Joint centres
+follow from landmarks, segment lengths from joint centres; the heights of the trunk's joints keep
+the proportions of the anthropometric tables. (2) The posture is fitted to the joint centres and to
+the landmarks that have a place in the marker set; the height of the foot's landmarks over the
+ankle is not fitted, because the feet are known to be flat. (3) Every tracking marker gets the
+place on its segment where it was seen in that posture.
 """
 
 from collections.abc import Mapping, Sequence
@@ -16,10 +16,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
+
 from human_model.anthropometry import segment_lengths
 from human_model.skeleton_3d import Skeleton3D
 from human_model.subject import Calibration, Subject
-
 from motion_tracker.core.errors import CalibrationError
 from motion_tracker.core.inverse_kinematics import IKSettings, InverseKinematics
 from motion_tracker.core.joint_centres import (

@@ -4,6 +4,7 @@
 
 import numpy as np
 import numpy.typing as npt
+
 from human_model.compiled import GRAVITY, newton_euler
 from human_model.skeleton import Skeleton
 

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Butterworth low-pass filters: zero-phase for whole recordings, causal for the live stream.
 
-The thesis filters motion at 6 Hz and plates at 25 Hz (section 3.4) without naming order or number of
-passes. Here both filters are of fourth order in effect and have their -3 dB point at the named
+The thesis filters motion at 6 Hz and plates at 25 Hz (section 3.4) without naming order or number
+of passes. Here both filters are of fourth order in effect and have their -3 dB point at the named
 cutoff: offline a second-order filter runs forward and backward, with its own cutoff raised so
 that the two passes together have -3 dB where asked (Robertson & Dowling 2003; Winter 2009,
 section 2.2.4.4); live one causal fourth-order filter runs, whose delay is known and stated.
@@ -121,11 +121,11 @@ def zero_phase(samples: npt.ArrayLike, rate: float, cutoff: float) -> Array:
     if not np.all(np.isfinite(array)):
         where = int(np.argwhere(~np.isfinite(array))[0][0])
         raise FilterError(f'samples: not finite at index {where}; fill the gaps first')
-    # Pre-warped, so that the correction holds for the digital filter and not only for its prototype.
+    # Pre-warped, so that the correction holds for the digital filter, not only for its prototype.
     warped = np.tan(np.pi * cutoff / rate) / (np.sqrt(2.0) - 1.0) ** 0.25
     single = float(np.arctan(warped) * rate / np.pi)
     sections = butter(2, single, fs=rate, output='sos')
-    pad = min(array.shape[0] - 1, int(round(1.5 * rate / cutoff)))
+    pad = min(array.shape[0] - 1, round(1.5 * rate / cutoff))
     return np.asarray(sosfiltfilt(sections, array, axis=0, padtype='odd', padlen=pad))
 
 
@@ -146,7 +146,7 @@ def derivatives(samples: npt.ArrayLike, rate: float) -> tuple[Array, Array]:
     """
     array = np.asarray(samples, dtype=np.float64)
     if array.shape[0] < 6:
-        raise FilterError(f'samples: at least six are needed for derivatives, got {array.shape[0]}')
+        raise FilterError(f'samples: six or more are needed for derivatives, got {array.shape[0]}')
     time = np.arange(array.shape[0]) / rate
     spline = make_interp_spline(time, array, k=5)
     return np.asarray(spline.derivative(1)(time)), np.asarray(spline.derivative(2)(time))
@@ -170,8 +170,8 @@ class CausalFilter:
     Attributes
     ----------
     delay : float
-        Group delay at low frequency [s]: 2.6131 / (2 pi cutoff) for order four, 69.3 ms at 6 Hz and
-        16.6 ms at 25 Hz. It is stated with every result and taken off its time stamp.
+        Group delay at low frequency [s]: 2.6131 / (2 pi cutoff) for order four, 69.3 ms at 6 Hz
+        and 16.6 ms at 25 Hz. It is stated with every result and taken off its time stamp.
     """
 
     ORDER = 4
@@ -184,7 +184,7 @@ class CausalFilter:
         self.cutoff = cutoff
         self.channels = channels
         self._omega = 2.0 * np.pi * cutoff
-        # Prototype of cutoff 1 rad/s: 1 / (1 + a1 s + a2 s^2 + a3 s^3 + s^4); time is counted in 1/omega.
+        # Prototype 1 / (1 + a1 s + a2 s^2 + a3 s^3 + s^4) of cutoff 1 rad/s: time in 1 / omega.
         _, polynomial = butter(self.ORDER, 1.0, analog=True)
         a = np.diag(np.ones(self.ORDER - 1), 1)
         a[-1] = -polynomial[:0:-1]

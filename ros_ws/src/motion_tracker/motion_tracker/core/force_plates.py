@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Ground reaction, centre of pressure and free moment from the wrenches of two force plates."""
 
+from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -183,6 +184,43 @@ class MassCheck:
                 f'{self.subject_mass:.1f} kg, deviation {100 * self.deviation:+.1f} %')
 
 
+class MassWatch:
+    """Waits for quiet standing and compares the plates with the subject's mass, once.
+
+    Parameters
+    ----------
+    subject_mass
+        kg.
+    tolerance
+        Accepted relative deviation.
+    """
+
+    #: Length of quiet standing that is averaged [s].
+    WINDOW = 0.5
+    #: Largest standard deviation of the vertical force in quiet standing, over its mean.
+    QUIET = 0.02
+
+    def __init__(self, subject_mass: float, tolerance: float) -> None:
+        self._mass = subject_mass
+        self._tolerance = tolerance
+        self._recent: deque[float] = deque()
+        self._done = False
+
+    def push(self, vertical: float, rate: float) -> MassCheck | None:
+        """Take the total vertical force [N] of one sample; the check when it can be made."""
+        if self._done:
+            return None
+        self._recent.append(vertical)
+        if len(self._recent) < max(2, round(self.WINDOW * rate)):
+            return None
+        fz = np.array(self._recent)
+        self._recent.popleft()
+        if fz.mean() <= 0 or fz.std() > self.QUIET * fz.mean():
+            return None
+        self._done = True
+        return check_body_mass(fz, rate, self._mass, self._tolerance, self.WINDOW)
+
+
 def check_body_mass(vertical: npt.ArrayLike, rate: float, subject_mass: float,
                     tolerance: float = 0.05, window: float = 0.5) -> MassCheck:
     """Compare the quietest stretch of the total vertical force with the subject's weight.
@@ -206,7 +244,7 @@ def check_body_mass(vertical: npt.ArrayLike, rate: float, subject_mass: float,
         If the recording is shorter than the window or not finite.
     """
     fz = np.asarray(vertical, dtype=np.float64)
-    length = max(2, int(round(window * rate)))
+    length = max(2, round(window * rate))
     if fz.ndim != 1 or fz.size < length:
         raise ForcePlateError(f'vertical force: {fz.size} samples are fewer than the {length} of '
                               f'a window of {window} s')

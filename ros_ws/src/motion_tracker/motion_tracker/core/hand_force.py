@@ -3,9 +3,9 @@
 """Force of the box on the hands, from the plates before lift-off and from the box after it.
 
 While the box still stands on something, part of its weight does too, and the plates under the
-feet feel only what the hands take: the vertical hand force is what the body's weight and inertia need
-less what the ground gives, less the bias this difference had while the hands were away from the
-box (the plates and the segment masses never agree exactly). Once the box has risen, the
+feet feel only what the hands take: the vertical hand force is what the body's weight and inertia
+need less what the ground gives, less the bias this difference had while the hands were away from
+the box (the plates and the segment masses never agree exactly). Once the box has risen, the
 force is -m (g + a). The two are blended over the first centimetres of the rise, and the first
 fades in with the hands' approach, so that the force has no step as long as its inputs have none.
 Noise of the first estimate: that of the ground force and of the body's acceleration, a few tens of

@@ -4,18 +4,19 @@
 
 Minimises over q, lower <= q <= upper,
 
-    sum_i w_i |p_i(q) - x_i|^2  +  sum_j v_j (q_j - r_j)^2  +  sum_k c_k ((1 - s_k) q_a - s_k q_b)^2
+    sum_i w_i |p_i(q) - x_i|^2 + sum_j v_j (q_j - r_j)^2 + sum_k c_k ((1 - s_k) q_a - s_k q_b)^2
 
 with marker positions p, measured positions x, prior r and a share s that the lower of two joints
 takes of their sum. Coordinates at a bound whose gradient points outward are held there
 (Bertsekas 1982, projected Newton); the others take a Levenberg-Marquardt step, which is cut at
-the bounds and accepted only if the objective falls. Everything is summed in a fixed order, so equal
-input gives equal bits.
+the bounds and accepted only if the objective falls. Everything is summed in a fixed order, so
+equal input gives equal bits.
 """
 
 import numba
 import numpy as np
 import numpy.typing as npt
+
 from human_model.compiled import body_frames
 from human_model.tree import TreeArrays
 
@@ -195,7 +196,8 @@ def fit(tree: TreeArrays, start: Array, lower: Array, upper: Array, body: IntArr
     converged = False
     stationarity = np.inf
     used = 0
-    for used in range(1, iterations + 1):
+    while used < iterations:
+        used += 1
         hessian = np.zeros((n_q, n_q))
         gradient = np.zeros(n_q)
         _normal_equations(tree, origin, axis, position, body, target, weight, hessian, gradient)
@@ -215,7 +217,9 @@ def fit(tree: TreeArrays, start: Array, lower: Array, upper: Array, body: IntArr
         free = np.empty(n_q, dtype=np.int64)
         stationarity = 0.0
         for j in range(n_q):
-            if (q[j] <= lower[j] and gradient[j] > 0.0) or (q[j] >= upper[j] and gradient[j] < 0.0):
+            at_lower = q[j] <= lower[j] and gradient[j] > 0.0
+            at_upper = q[j] >= upper[j] and gradient[j] < 0.0
+            if at_lower or at_upper:
                 continue
             free[count] = j
             count += 1

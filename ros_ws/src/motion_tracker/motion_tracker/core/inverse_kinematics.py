@@ -20,19 +20,20 @@ from functools import cache
 
 import numpy as np
 import numpy.typing as npt
+
+from human_model.compiled import point_positions
 from human_model.report import SolveStatus
 from human_model.skeleton import Skeleton
-
 from motion_tracker.core.errors import InverseKinematicsError
 from motion_tracker.core.ik_kernel import data_curvature, fit
 from motion_tracker.core.marker_model import MarkerModel
-from motion_tracker.core.marker_set import DATA
+from motion_tracker.core.marker_set import DATA, mirror_name
 
 Array = npt.NDArray[np.float64]
 
 _PLACE = ('pelvis_tx', 'pelvis_ty', 'pelvis_tz', 'pelvis_tilt', 'pelvis_list', 'pelvis_rotation')
 
-#: Postures tried when there is no previous frame, as multiples of one (standing, half and deep squat).
+#: Postures tried when there is no previous frame: standing, half and deep squat, as multiples.
 _CROUCH = {'hip_flexion': 1.4, 'knee_angle': 1.5, 'ankle_angle': 0.3}
 _STARTS = (0.0, 0.6, 1.2)
 
@@ -152,9 +153,10 @@ class InverseKinematics:
         self.model = model
         self.settings = settings or IKSettings()
         tree = skeleton.tree
-        segment = np.array([skeleton.parameters.index(name) for name in model.segments])
-        self._body = np.ascontiguousarray(tree.segment_body[segment], dtype=np.int64)
-        self._local = np.ascontiguousarray(tree.segment_offset[segment] + model.offsets)
+        self._segment = np.array([skeleton.parameters.index(name) for name in model.segments],
+                                 dtype=np.int64)
+        self._body = np.ascontiguousarray(tree.segment_body[self._segment], dtype=np.int64)
+        self._local = np.ascontiguousarray(tree.segment_offset[self._segment] + model.offsets)
         self._lower = np.ascontiguousarray(skeleton.limits[:, 0])
         self._upper = np.ascontiguousarray(skeleton.limits[:, 1])
         place = np.array([name in _PLACE for name in skeleton.coordinates])
@@ -165,6 +167,8 @@ class InverseKinematics:
         prior = [(skeleton.index(a), skeleton.index(b), share) for a, b, share in spine_prior()]
         self._pair = np.array([[a, b] for a, b, _ in prior], dtype=np.int64)
         self._share = np.array([share for _, _, share in prior])
+        names = model.names
+        self._mirror = np.array([names.index(mirror_name(name, names) or name) for name in names])
         blind = 'lumbar' not in model.segments
         self._pair_weight = np.full(len(prior), self.settings.blind_spine_weight if blind
                                     else self.settings.spine_weight)
@@ -186,10 +190,8 @@ class InverseKinematics:
 
     def predict(self, q: npt.ArrayLike) -> Array:
         """Marker positions (n_markers, 3) [m] at coordinates q."""
-        from human_model.compiled import point_positions
-        segment = np.array([self.skeleton.parameters.index(name) for name in self.model.segments])
         return np.asarray(point_positions(
-            self.skeleton.tree, np.ascontiguousarray(q, dtype=np.float64), segment,
+            self.skeleton.tree, np.ascontiguousarray(q, dtype=np.float64), self._segment,
             np.ascontiguousarray(self.model.offsets)))
 
     def solve(self, positions: npt.ArrayLike, previous: npt.ArrayLike | None = None,
@@ -225,13 +227,19 @@ class InverseKinematics:
         distance = np.linalg.norm(position - target, axis=1)
         rejected: tuple[str, ...] = ()
         swapped = ''
-        if self._too_far(distance, weight):
-            q, position, weight, rejected, swapped = self._robust(q, target, weight, last, held)
+        if self._too_far(distance, weight) or self._crossed_pairs(position, target, weight):
+            crossed = self._sides_exchanged(target, weight, distance)
+            if crossed is not None:
+                q, position, target = crossed
+                swapped = 'of the left and right side are all exchanged'
+            else:
+                q, position, weight, rejected, swapped = self._robust(q, target, weight, last,
+                                                                      held)
             distance = np.linalg.norm(position - target, axis=1)
         residuals = np.where(weight > 0, distance, np.nan)
         rms = float(np.sqrt(np.nanmean(residuals**2))) if (weight > 0).any() else np.nan
         maximum = float(np.nanmax(residuals)) if (weight > 0).any() else np.nan
-        status, message = self._judge(converged, rms, maximum, residuals, held, swapped)
+        status, message = self._judge(converged, rms, maximum, residuals, held, swapped, rejected)
         names = tuple(self.skeleton.coordinates[j] for j in np.flatnonzero(held))
         return IKSolution(q, residuals, rms, maximum, int((weight > 0).sum()), names, rejected,
                           status, message, int(iterations), float(value), float(stationarity))
@@ -274,6 +282,22 @@ class InverseKinematics:
         return bool(seen.max() > self.settings.max_residual
                     or np.sqrt(np.mean(seen**2)) > self.settings.rms_residual)
 
+    def _sides_exchanged(self, target: Array, weight: Array, distance: Array,
+                         ) -> tuple[Array, Array, Array] | None:
+        """Fit with all left and right names exchanged, if that explains the markers far better.
+
+        Returns coordinates, model positions and the exchanged target, or None.
+        """
+        if np.median(distance[weight > 0]) < self.settings.rms_residual:
+            return None
+        crossed, seen = target[self._mirror], weight[self._mirror]
+        nothing = np.zeros(len(self._lower), dtype=np.bool_)
+        q, position, *_ = self._best(crossed, seen, None, nothing)
+        after = np.linalg.norm(position - crossed, axis=1)
+        if self._too_far(after, seen):
+            return None
+        return q, position, np.where((seen > 0)[:, None], crossed, position)
+
     def _robust(self, q: Array, target: Array, weight: Array, last: Array | None,
                 held: npt.NDArray[np.bool_],
                 ) -> tuple[Array, Array, Array, tuple[str, ...], str]:
@@ -289,26 +313,40 @@ class InverseKinematics:
             start, position, *_ = self._fit(start, target, trust, last, held)
         distance = np.linalg.norm(position - target, axis=1)
         bad = (weight > 0) & (distance > self.settings.max_residual)
+        names = self.model.names
+        found = []
+        for a, b, straight, crossed in self._crossed_pairs(position, target, weight):
+            bad[[a, b]] = True
+            found.append(f'{names[a]} and {names[b]} look exchanged (residual {straight:.3f} m, '
+                         f'{crossed:.3f} m when exchanged)')
         good = np.where(bad, 0.0, weight)
         start, position, *_ = self._fit(start, target, good, last, held)
-        names = self.model.names
-        suspects = np.flatnonzero(bad)
-        found = []
-        for at, a in enumerate(suspects):
-            for b in suspects[at + 1:]:
-                crossed = max(np.linalg.norm(target[a] - position[b]),
-                              np.linalg.norm(target[b] - position[a]))
-                straight = min(np.linalg.norm(target[a] - position[a]),
-                               np.linalg.norm(target[b] - position[b]))
+        return (start, position, good, tuple(names[i] for i in np.flatnonzero(bad)),
+                '; '.join(found))
+
+    def _crossed_pairs(self, position: Array, target: Array, weight: Array,
+                       ) -> list[tuple[int, int, float, float]]:
+        """Pairs of markers whose residuals shrink to less than half when they are exchanged.
+
+        Each with the smaller residual as named and the larger when exchanged [m].
+        """
+        away = np.linalg.norm(target - position, axis=1)
+        far = np.flatnonzero((weight > 0) & (away > self.settings.rms_residual))
+        pairs = []
+        for at, a in enumerate(far):
+            for b in far[at + 1:]:
+                crossed = max(float(np.linalg.norm(target[a] - position[b])),
+                              float(np.linalg.norm(target[b] - position[a])))
+                straight = float(min(away[a], away[b]))
                 if crossed < 0.5 * straight:
-                    found.append(f'{names[a]} and {names[b]} look exchanged (residual '
-                                 f'{straight:.3f} m, {crossed:.3f} m when exchanged)')
-        return start, position, good, tuple(names[i] for i in suspects), '; '.join(found)
+                    pairs.append((int(a), int(b), straight, crossed))
+        return pairs
 
     def _judge(self, converged: bool, rms: float, maximum: float, residuals: Array,
-               held: npt.NDArray[np.bool_], swapped: str) -> tuple[SolveStatus, str]:
+               held: npt.NDArray[np.bool_], swapped: str, rejected: tuple[str, ...],
+               ) -> tuple[SolveStatus, str]:
         if swapped:
-            return SolveStatus.TRACKER_BAD_INPUT, f'markers {swapped}'
+            return SolveStatus.TRACKER_MARKERS_SWAPPED, f'markers {swapped}'
         if not converged:
             return SolveStatus.TRACKER_NOT_CONVERGED, 'inverse kinematics did not converge'
         if not (maximum <= self.settings.max_residual and rms <= self.settings.rms_residual):
@@ -319,7 +357,11 @@ class InverseKinematics:
             names = [self.skeleton.coordinates[j] for j in np.flatnonzero(held)]
             return (SolveStatus.TRACKER_MARKERS_MISSING,
                     f'no marker sees {", ".join(names)}: held at the previous value')
-        return SolveStatus.OK, ''
+        seen = {s for s, r in zip(self.model.segments, residuals, strict=True) if np.isfinite(r)}
+        blind = sorted(set(self.model.segments) - seen)
+        if blind:
+            return SolveStatus.TRACKER_MARKERS_MISSING, f'no marker seen on {", ".join(blind)}'
+        return SolveStatus.OK, f'left out: {", ".join(rejected)}' if rejected else ''
 
     def _lost(self, target: Array, weight: Array, last: Array | None,
               held: npt.NDArray[np.bool_]) -> IKSolution:

@@ -5,12 +5,12 @@
 Thesis, section 4.3: the lift starts in the first frame in which the velocity of the box increases
 from rest in the upward direction, and ends in the frame in which its height reaches the first
 local maximum after that. Measured heights carry noise, so that taken literally every frame
-at rest is a local maximum. The detector therefore (1) finds the rise with a threshold on the smoothed
-velocity, (2) waits until the rise and its end are certain, and (3) goes back and estimates the
-instant itself from the raw samples: where there was rest before (or is rest after) by the change
-point of a polynomial of second or third order, where the motion turned without rest by the zero of
-the smoothed velocity. Smoothing looks a fixed time ahead, so the events are the same live and
-offline; live they are only reported later, and say how much.
+at rest is a local maximum. The detector therefore (1) finds the rise with a threshold on the
+smoothed velocity, (2) waits until the rise and its end are certain, and (3) goes back and
+estimates the instant itself from the raw samples: where there was rest before (or is rest after)
+by the change point from a constant to a polynomial, where the motion turned without rest by the
+zero of the smoothed velocity. Smoothing looks a fixed time ahead, so the events are the same live
+and offline; live they are only reported later, and say how much.
 """
 
 from collections.abc import Callable, Iterable
@@ -72,7 +72,7 @@ class LiftEventSettings:
     settle_time: float = 0.15
     drop: float = 0.01
     half_window: float = 0.05
-    onset_rise: float = 0.03
+    onset_rise: float = 0.045
 
     def __post_init__(self) -> None:
         """Check that every threshold is positive."""
@@ -196,10 +196,9 @@ class LiftEventDetector:
         return [self._event(LiftPhase.START, when, value)]
 
     def _look_for_end(self, at: int) -> list[LiftEvent]:
-        if self._smooth[at] > self._smooth[self._top]:
-            if self._speed[at] > self.settings.rest_speed or self._speed[at - 1] > \
-                    self.settings.rest_speed or self._speed[self._top] > self.settings.rest_speed:
-                self._top = at
+        recent = max(self._speed[at], self._speed[at - 1], self._speed[self._top])
+        if self._smooth[at] > self._smooth[self._top] and recent > self.settings.rest_speed:
+            self._top = at
         settled = self._time[at] - self._time[self._top] >= self.settings.settle_time
         dropped = self._smooth[self._top] - self._smooth[at] >= self.settings.drop
         return [self._end()] if settled or dropped else []
@@ -243,8 +242,9 @@ class LiftEventDetector:
         rested = self._time[base] - self._time[before] >= self.settings.rest_time - 1e-9
         if rested and self._at_rest(before, base):
             first = before
-            while first > 0 and self._time[base] - self._time[first] < 3 * self.settings.rest_time \
-                    and abs(self._speed[first - 1]) <= self.settings.rest_speed:
+            while (first > 0
+                   and self._time[base] - self._time[first] < 3 * self.settings.rest_time
+                   and abs(self._speed[first - 1]) <= self.settings.rest_speed):
                 first -= 1
             level = float(np.median(self._raw[first:before + 1]))
             last = base
@@ -297,46 +297,31 @@ class LiftEventDetector:
 def _change_point(time: Array, height: Array) -> tuple[float, float]:
     """Instant [s] and level [m] at which a constant turns into a rise.
 
-    With x the time since the instant and X its value at the last sample, the rise is a
-    non-negative sum of ``x^3`` and ``x^3 - x^4 / (2 X)``: a motion whose acceleration starts
-    from zero with a jerk that does not grow. A start with a step of acceleration, ``x^2``, is
+    With x the time since the instant and X its value at the last sample, the rise goes with
+    ``x^3 - x^4 / (4 X)``: acceleration starts from zero and its growth eases off, as in the
+    first twentieth of a minimum-jerk motion. A start with a step of acceleration, ``x^2``, is
     taken only when it fits clearly better.
     """
-    smooth = _onset(time, height, lambda x: (x**3, x**3 - x**4 / (2.0 * x[-1])))
-    step = _onset(time, height, lambda x: (x**2,))
+    smooth = _onset(time, height, lambda x: x**3 - x**4 / (4.0 * x[-1]))
+    step = _onset(time, height, lambda x: x**2)
     _, instant, level = step if step[0] < STEP_EVIDENCE * smooth[0] else smooth
     return instant, level
 
 
-def _onset(time: Array, height: Array, shapes: Callable[[Array], tuple[Array, ...]],
+def _onset(time: Array, height: Array, shape: Callable[[Array], Array],
            ) -> tuple[float, float, float]:
-    """Sum of squares [m^2], instant [s] and level [m] of the best onset of one family."""
+    """Sum of squares [m^2], instant [s] and level [m] of the best onset of one shape."""
     best = (np.inf, float(time[0]), float(height[0]))
     about = height - height.mean()
     for instant in np.arange(time[0], time[-2], _STEP):
-        columns = np.stack(shapes(np.maximum(0.0, time - instant)))
-        centred = columns - columns.mean(axis=1, keepdims=True)
-        for share in _non_negative(centred, about):
-            misfit = about - share @ centred
-            error = float(misfit @ misfit)
-            if error < best[0]:
-                level = height.mean() - share @ columns.mean(axis=1)
-                best = (error, float(instant), float(level))
+        rise = shape(np.maximum(0.0, time - instant))
+        centred = rise - rise.mean()
+        slope = float(centred @ about) / float(centred @ centred)
+        misfit = about - slope * centred
+        error = float(misfit @ misfit)
+        if slope > 0.0 and error < best[0]:
+            best = (error, float(instant), float(height.mean() - slope * rise.mean()))
     return best
-
-
-def _non_negative(columns: Array, target: Array) -> list[Array]:
-    """Least-squares coefficients that are not negative: of each column alone and of all."""
-    found = []
-    for i, column in enumerate(columns):
-        alone = np.zeros(len(columns))
-        alone[i] = max(0.0, float(column @ target) / float(column @ column))
-        found.append(alone)
-    if len(columns) > 1:
-        together = np.linalg.lstsq(columns.T, target, rcond=None)[0]
-        if np.all(together >= 0.0):
-            found.append(together)
-    return found
 
 
 def detect_lifts(time: npt.ArrayLike, height: npt.ArrayLike, body: npt.ArrayLike | None = None,

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+
 from human_model.anthropometry import segment_lengths
 from human_model.subject import Calibration, Subject
-
 from motion_tracker.core.errors import MarkerSetError
 from motion_tracker.core.marker_set import MarkerSet
 

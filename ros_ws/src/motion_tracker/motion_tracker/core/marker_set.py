@@ -7,21 +7,21 @@ frame (REP-103 axes in the neutral posture, origin in the proximal joint) for th
 subject below; for another person each axis is scaled with the length or the three lengths (x y z)
 that ``scale_with`` names. Rows without a position get theirs from a static trial only. ``weight``
 is the weight of the squared distance in the fit: bony landmarks count twice as much as markers
-over muscle, on the moving shoulder, or where the skin of the back slides. ``tracking`` is ``no`` for markers that are only known by name
-or used in the static trial only.
+over muscle, on the moving shoulder, or where the skin of the back slides. ``tracking`` is ``no``
+for markers that are only known by name or used in the static trial only.
 """
 
 import csv
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
+
 from human_model.anthropometry import segment_lengths
 from human_model.subject import Subject
-
 from motion_tracker.core.errors import MarkerSetError
 
 Array = npt.NDArray[np.float64]
@@ -97,18 +97,19 @@ class MarkerSet:
             scaled[marker.name] = np.array(marker.position) * ratio
         return scaled
 
-    def mirror(self, name: str) -> str | None:
-        """Name of the marker on the other side of the body that differs in the side only.
 
-        The side is a leading L or R, in either case, as in ``LKNE``, ``r_knee`` or ``L.ASIS``.
-        """
-        other = {'L': 'R', 'R': 'L'}.get(name[:1].upper())
-        if other is None:
-            return None
-        for candidate in (other + name[1:], other.lower() + name[1:]):
-            if candidate in self.names:
-                return candidate
+def mirror_name(name: str, names: Sequence[str]) -> str | None:
+    """Name of the marker on the other side of the body, if there is one among ``names``.
+
+    The side is a leading L or R, in either case, as in ``LKNE``, ``r_knee`` or ``L.ASIS``.
+    """
+    other = {'L': 'R', 'R': 'L'}.get(name[:1].upper())
+    if other is None:
         return None
+    for candidate in (other + name[1:], other.lower() + name[1:]):
+        if candidate in names:
+            return candidate
+    return None
 
 
 def available() -> tuple[str, ...]:

@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
+
 from human_model.motion import POINTS, Lift
 from human_model.report import SolveReport, SolveStatus
 from human_model.skeleton import Skeleton
-
 from motion_tracker.core.dynamics import needed_force
 from motion_tracker.core.filters import derivatives, zero_phase
 from motion_tracker.core.force_plates import SIDES, PlateGeometry, ground_reaction

@@ -151,7 +151,7 @@ class SampledStream:
         if self._filter is None:
             return
         if at > 0:
-            lost = int(round((self._stamps[at] - self._stamps[at - 1]) * self.rate)) - 1
+            lost = round((self._stamps[at] - self._stamps[at - 1]) * self.rate) - 1
             if lost > 0:
                 self._counts[f'{self.name}: lost samples'] += lost
                 if lost + 1 > 5:

@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
+
 from human_model.motion import BodyMotion, Lift
 from human_model.report import SolveStatus
-
 from motion_tracker.core.errors import TrackerError
 from motion_tracker.core.filters import MOTION_CUTOFF, PLATE_CUTOFF
 from motion_tracker.core.hand_force import HandForceSettings

@@ -3,8 +3,8 @@
 """The motion tracker: marker frames, wrenches and box poses in; body motion and lifts out.
 
 Streams may arrive in any interleaving: a marker frame waits until both plates and the box (if
-there are any) have delivered samples up to its stamp, so the results depend on the
-stamps alone and are the same live, replayed and offline. All live results of one frame belong to one
+there are any) have delivered samples up to its stamp, so the results depend on the stamps
+alone and are the same live, replayed and offline. All live results of one frame belong to one
 instant: the stamp of the frame minus the delay of the motion filter; the plates, whose filter is
 faster, are read that much earlier.
 """
@@ -14,24 +14,25 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
+
 from human_model.motion import POINTS
 from human_model.report import SolveStatus
 from human_model.skeleton_3d import Skeleton3D
 from human_model.subject import Subject
-
 from motion_tracker.core.dynamics import needed_force
 from motion_tracker.core.errors import TrackerError
 from motion_tracker.core.filters import CausalFilter
 from motion_tracker.core.force_plates import (
     SIDES,
+    MassWatch,
     PlateGeometry,
-    check_body_mass,
     ground_reaction,
     total_reaction,
 )
 from motion_tracker.core.hand_force import HandForceEstimator
 from motion_tracker.core.inverse_kinematics import IKSolution, InverseKinematics
 from motion_tracker.core.lift_events import LiftEvent, LiftEventDetector, LiftPhase
+from motion_tracker.core.marker_frames import MarkerFrames
 from motion_tracker.core.marker_model import model_for
 from motion_tracker.core.marker_set import MarkerSet
 from motion_tracker.core.measured_lift import LiftBuilder
@@ -52,14 +53,8 @@ Array = npt.NDArray[np.float64]
 _HANDS = (POINTS.index('hand_r'), POINTS.index('hand_l'))
 _SHOULDERS = (POINTS.index('shoulder_r'), POINTS.index('shoulder_l'))
 
-#: Length of quiet standing in which the plates are compared with the subject's mass [s].
-_QUIET_TIME = 0.5
-#: Standard deviation of the vertical force in quiet standing, over its mean.
-_QUIET_SHARE = 0.02
 #: Frames older than this are forgotten unless a lift needs them [s].
 _HISTORY = 15.0
-#: A coordinate beyond this is no position in metres in a laboratory [m].
-_LARGEST_POSITION = 50.0
 
 
 class MotionTracker:
@@ -77,6 +72,8 @@ class MotionTracker:
         Geometry by side; plates on the floor at the world's origin if absent.
     settings
         Filters and thresholds.
+    first_lift
+        Number of the first lift, which goes into its name.
 
     Attributes
     ----------
@@ -87,7 +84,7 @@ class MotionTracker:
     def __init__(self, subject: Subject, marker_set: MarkerSet | None, box_mass: float = 0.0,
                  box_size: npt.ArrayLike = (0.0, 0.0, 0.0),
                  plates: Mapping[str, PlateGeometry] | None = None,
-                 settings: TrackerSettings | None = None) -> None:
+                 settings: TrackerSettings | None = None, first_lift: int = 1) -> None:
         self.settings = settings or TrackerSettings()
         self.subject = subject
         self.skeleton = Skeleton3D.of(subject)
@@ -101,7 +98,8 @@ class MotionTracker:
         self._hand_force = HandForceEstimator(box_mass, box_size, self.settings.hand_force)
         self._builder = LiftBuilder(self.skeleton, self.settings, self._plates, self._wrenches,
                                     self._box)
-        self._row = {name: i for i, name in enumerate(self.model.names)}
+        self._frames = MarkerFrames(self.model.names, marker_set.names if marker_set else (),
+                                    self.counts)
         self._detectors = {FROM_BOX: LiftEventDetector(self.settings.events),
                            FROM_HANDS: LiftEventDetector(self.settings.events)}
         self._queue: deque[tuple[float, Array]] = deque()
@@ -115,18 +113,20 @@ class MotionTracker:
         self._absent: set[str] = set()
         self._lift: tuple[str, LiftEvent, float | None] | None = None
         self._due: list[tuple[str, LiftEvent, LiftEvent, float | None]] = []
-        self._lifts = 0
+        self._lifts = first_lift - 1
         self._end_known: float | None = None
-        self._quiet: deque[float] = deque()
-        self._mass_checked = False
-        #: Markers without a place in the model that need no notice (any more).
-        self._unknown = set(marker_set.names) if marker_set else set()
+        self._mass_watch = MassWatch(subject.mass, self.settings.mass_tolerance)
         self._notices: list[Output] = []
 
     @property
     def filter_delay(self) -> float:
         """Delay of the live results [s]; 0 until the marker rate is known."""
         return self._filter.delay if self._filter else 0.0
+
+    @property
+    def lifts(self) -> int:
+        """Number of the last lift that began; ``first_lift`` - 1 before."""
+        return self._lifts
 
     @property
     def marker_rate(self) -> float:
@@ -151,10 +151,6 @@ class MotionTracker:
         TrackerError
             If names and positions do not belong together, or the positions are not in metres.
         """
-        array = np.asarray(positions, dtype=np.float64).reshape(-1, 3)
-        if len(array) != len(names):
-            raise TrackerError(f'markers at {stamp:.3f} s: {len(names)} names, '
-                               f'{len(array)} positions')
         if not np.isfinite(stamp):
             self.counts['markers: not finite'] += 1
             return []
@@ -162,12 +158,11 @@ class MotionTracker:
             kind = 'duplicate stamps' if stamp == self._newest else 'unsorted stamps'
             self.counts[f'markers: {kind}'] += 1
             return []
-        largest = float(np.max(np.abs(array[np.isfinite(array)]), initial=0.0))
-        if largest > _LARGEST_POSITION:
-            raise TrackerError(f'markers at {stamp:.3f} s: a coordinate is {largest:.0f} m; are '
-                               'the markers in millimetres?')
+        target, unknown = self._frames.arrange(stamp, names, positions)
+        self._notices += [Notice(f'marker {name!r} is not tracked: it has no place in the marker '
+                                 'model', True) for name in unknown]
         self._newest = stamp
-        self._queue.append((stamp, self._arrange(names, array)))
+        self._queue.append((stamp, target))
         return self._drain(False)
 
     def push_wrench(self, side: str, stamp: float, force: npt.ArrayLike, moment: npt.ArrayLike,
@@ -194,26 +189,6 @@ class MotionTracker:
             outputs += self._events(detector.finish(), source)
         outputs += self._lifts_due(np.inf)
         return outputs
-
-    def _arrange(self, names: Sequence[str], array: Array) -> Array:
-        """Positions (n_markers, 3) in the model's order, NaN where not seen."""
-        target = np.full((len(self._row), 3), np.nan)
-        seen: set[str] = set()
-        for name, position in zip(names, array, strict=True):
-            row = self._row.get(name)
-            if row is None:
-                if name not in self._unknown:
-                    self._unknown.add(name)
-                    self._notices.append(Notice(f'marker {name!r} is not tracked: it has no place '
-                                                'in the marker model', True))
-                continue
-            if name in seen:
-                self.counts['markers: name twice in a frame'] += 1
-                target[row] = np.nan
-                continue
-            seen.add(name)
-            target[row] = position
-        return target
 
     def _awaited(self) -> list[SampledStream]:
         streams = list(self._wrenches.values())
@@ -301,7 +276,7 @@ class MotionTracker:
                       ) -> tuple[tuple[Array, Array, Array], tuple[Array, Array, Array] | None]:
         """Pass one frame, and the lost ones before it by interpolation, through the filters."""
         assert self._filter is not None and self._box_filter is not None
-        lost = 0 if previous is None else int(round((stamp - previous) * self._rate)) - 1
+        lost = 0 if previous is None else round((stamp - previous) * self._rate) - 1
         if lost > 0:
             self.counts['markers: lost frames'] += lost
         if self._input is None or lost > self.settings.longest_gap * self._rate + 1e-9:
@@ -341,7 +316,10 @@ class MotionTracker:
             total_force, total_cop = force[0], cop[0]
             need = needed_force(self.skeleton, q, qd, qdd)
             missing = float(need[2] - total_force[2])
-            self._check_mass(float(total_force[2]))
+            if self._lift is None:
+                check = self._mass_watch.push(float(total_force[2]), self._rate)
+                if check is not None:
+                    self._notices.append(Notice(str(check), check.ok))
         if box is not None:
             forces |= self._carry(time, q, box, missing)
         motion = self.skeleton.body_motion(time, q, qd, qdd, **forces)
@@ -367,22 +345,6 @@ class MotionTracker:
         force = self._hand_force.estimate(missing, hands, position, acceleration,
                                           self._hand_force.support, since)
         return {'hand_force': force[None], 'box_position': position[None]}
-
-    def _check_mass(self, vertical: float) -> None:
-        if self._mass_checked or self._lift is not None:
-            return
-        self._quiet.append(vertical)
-        length = max(2, int(round(_QUIET_TIME * self._rate)))
-        if len(self._quiet) < length:
-            return
-        fz = np.array(self._quiet)
-        self._quiet.popleft()
-        if fz.mean() <= 0 or fz.std() > _QUIET_SHARE * fz.mean():
-            return
-        self._mass_checked = True
-        check = check_body_mass(fz, self._rate, self.subject.mass, self.settings.mass_tolerance,
-                                _QUIET_TIME)
-        self._notices.append(Notice(str(check), check.ok))
 
     def _take_notices(self) -> list[Output]:
         notices, self._notices = self._notices, []

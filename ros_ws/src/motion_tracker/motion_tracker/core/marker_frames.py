@@ -1,0 +1,71 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Marker frames as they come, in the order of the marker model."""
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from motion_tracker.core.errors import TrackerError
+
+Array = npt.NDArray[np.float64]
+
+#: A coordinate beyond this is no position in metres in a laboratory [m].
+LARGEST_POSITION = 50.0
+
+
+class MarkerFrames:
+    """Arranges marker frames; remembers names it has already complained about.
+
+    Parameters
+    ----------
+    names
+        Of the marker model, in its order.
+    known
+        Further names that need no notice: markers of the set that are not tracked.
+    counts
+        Where refused markers are counted.
+    """
+
+    def __init__(self, names: Sequence[str], known: Iterable[str], counts: Counter[str]) -> None:
+        self._row = {name: i for i, name in enumerate(names)}
+        self._noticed = set(known)
+        self._counts = counts
+
+    def arrange(self, stamp: float, names: Sequence[str], positions: npt.ArrayLike,
+                ) -> tuple[Array, list[str]]:
+        """Positions (n_markers, 3) [m] in the model's order, and names not seen before.
+
+        A marker that is not there is NaN; so is one whose name occurs twice.
+
+        Raises
+        ------
+        TrackerError
+            If names and positions do not belong together, or the positions are not in metres.
+        """
+        array = np.asarray(positions, dtype=np.float64).reshape(-1, 3)
+        if len(array) != len(names):
+            raise TrackerError(f'markers at {stamp:.3f} s: {len(names)} names, '
+                               f'{len(array)} positions')
+        largest = float(np.max(np.abs(array[np.isfinite(array)]), initial=0.0))
+        if largest > LARGEST_POSITION:
+            raise TrackerError(f'markers at {stamp:.3f} s: a coordinate is {largest:.0f} m; are '
+                               'the markers in millimetres?')
+        target = np.full((len(self._row), 3), np.nan)
+        seen: set[str] = set()
+        unknown = []
+        for name, position in zip(names, array, strict=True):
+            row = self._row.get(name)
+            if row is None:
+                if name not in self._noticed:
+                    self._noticed.add(name)
+                    unknown.append(name)
+            elif name in seen:
+                self._counts['markers: name twice in a frame'] += 1
+                target[row] = np.nan
+            else:
+                seen.add(name)
+                target[row] = position
+        return target, unknown
