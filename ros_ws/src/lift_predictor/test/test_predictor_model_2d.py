@@ -9,10 +9,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from human_model.named_subjects import named_parameters, named_subject
 from human_model.skeleton import ExternalForce
-from human_model.strength import JointStrength
+from human_model.strength import JointStrength, coefficient_sets
 from human_model.subject import Subject
 from lift_predictor.core.evaluation import SagittalLoads, evaluate
+from lift_predictor.core.exceptions import TaskError
 from lift_predictor.core.kinematics import chain_positions, pelvis_motion
 from lift_predictor.core.node_functions import CENTRES, NODE_ROWS, node_functions
 from lift_predictor.core.parameters import JOINTS, LiftParameters
@@ -180,3 +182,33 @@ def test_pelvis_motion_against_finite_differences(parameters: LiftParameters, mo
     _, velocity, acceleration = pelvis_motion(q, dq, ddq, parameters)
     np.testing.assert_allclose(velocity, (at(h) - at(-h)) / (2.0 * h), atol=1e-6)
     np.testing.assert_allclose(acceleration, (at(h) - 2.0 * at(0.0) + at(-h)) / h**2, atol=2e-5)
+
+
+def test_published_link_table_can_be_used(motion) -> None:
+    """Table 2.2 has no mass between hips and spine: there both joints carry the same moment."""
+    person = Person.of(named_subject('thesis_2d'), segments=named_parameters('thesis_2d'))
+    assert person.body[:, 0].sum() == pytest.approx(83.73, abs=0.01)
+    parameters = LiftParameters(
+        body=person.body,
+        strength_lower=person.strength_lower,
+        strength_upper=person.strength_upper,
+        circle=person.circle,
+        ankle=np.array([0.0, person.ankle_height]),
+        support=np.array([-0.05, 0.2]),
+        ground_height=0.0,
+        gravity=person.gravity,
+        duration=1.2,
+        box_mass=20.0,
+        box_radius=0.1,
+        box_from_hand=np.zeros(2),
+    )
+    torque = evaluate(FUNCTIONS['report'], *motion, parameters).torque
+    spine, hip = JOINTS.index('lumbar_extension'), JOINTS.index('hip_flexion')
+    np.testing.assert_allclose(torque[:, spine], -torque[:, hip], rtol=1e-12)
+
+
+def test_strength_that_can_change_sign_is_refused(subject: Subject) -> None:
+    signed = [name for name in coefficient_sets() if 'unconstrained' in name]
+    assert signed
+    with pytest.raises(TaskError, match='negative coefficients'):
+        Person.of(subject, signed[0])
