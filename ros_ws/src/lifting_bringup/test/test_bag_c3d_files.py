@@ -88,6 +88,26 @@ def test_points_plates_and_emg(file, standing):
         np.testing.assert_allclose(plate.moment[::RATIO], truth.moment, atol=1e-3)
 
 
+def test_unlabelled_points_are_left_out_and_said(file, standing, tmp_path):
+    c3d = ezc3d.c3d(str(file))
+    labels = c3d['parameters']['POINT']['LABELS']['value']
+    labels[0] = '*17'
+    c3d.write(str(tmp_path / 'b.c3d'))
+    raw = read_c3d(tmp_path / 'b.c3d')
+    assert raw.names == standing.raw.names[1:]
+    np.testing.assert_allclose(raw.positions, standing.raw.positions[:, 1:] * 1000.0, atol=1e-3)
+    assert any('1 unlabelled points left out' in note for note in raw.notes)
+
+
+def test_label_given_twice_is_named(file, tmp_path):
+    c3d = ezc3d.c3d(str(file))
+    labels = c3d['parameters']['POINT']['LABELS']['value']
+    labels[0] = labels[1]
+    c3d.write(str(tmp_path / 'b.c3d'))
+    with pytest.raises(FileFormatError, match="'CLAV' appears twice"):
+        read_c3d(tmp_path / 'b.c3d')
+
+
 def test_named_channels_only(file):
     raw = read_c3d(file, ('EMG_BFR',))
     assert raw.analog is not None

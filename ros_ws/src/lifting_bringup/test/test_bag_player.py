@@ -41,6 +41,10 @@ try:
 except Exception as error:
     print(json.dumps({'error': type(error).__name__, 'message': str(error)}))
 """
+HELD = """
+import lifting_bringup.bags.player
+lifting_bringup.bags.player._HELD_IN_MEMORY = 0
+"""
 RECORD = """
 import json, sys, threading
 from pathlib import Path
@@ -152,6 +156,11 @@ def test_real_time_takes_the_time_of_the_bag(domain, bag):
 def test_loop_and_start_offset_repeat_latched_messages(domain, bag):
     report = play(bag, rate=10.0, loop=2, start=2.0)
     assert report['messages'] == {**dict.fromkeys(PLATES, 2000), '/note': 2}
+
+
+def test_big_bags_are_read_while_they_play(domain, bag):
+    report = finish(start(HELD + PLAY, json.dumps({'bag': str(bag), 'rate': 10.0, 'loop': 2})))
+    assert report['messages'] == {**dict.fromkeys(PLATES, 6000), '/note': 2}
 
 
 def test_pause_by_service_holds_the_player(domain, bag):

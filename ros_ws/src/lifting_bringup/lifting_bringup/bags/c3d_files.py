@@ -71,11 +71,13 @@ def read_c3d(path: str | Path, emg: tuple[str, ...] | None = None) -> RawRecordi
         c3d = ezc3d.c3d(str(path), extract_forceplat_data=True)
     except Exception as error:  # ezc3d raises bare C++ exceptions of several kinds
         raise FileFormatError(path, f'ezc3d cannot read it: {error}') from error
-    labels = [_text(name) for name in _parameter(c3d, path, 'POINT', 'LABELS')]
     points = np.asarray(c3d['data']['points'], dtype=np.float64)
     if points.shape[1] == 0 or points.shape[2] == 0:
         raise FileFormatError(path, 'holds no points', field='POINT:USED')
-    names = tuple(label.rsplit(':', 1)[-1] for label in labels[: points.shape[1]])
+    labels = _point_labels(path, c3d, points.shape[1])
+    # Trajectories that nobody has labelled: no name, or a star and a number.
+    named = [i for i, label in enumerate(labels) if label and not label.startswith('*')]
+    names = tuple(labels[i].rsplit(':', 1)[-1] for i in named)
     if len(set(names)) < len(names):
         twice = next(n for n in names if names.count(n) > 1)
         raise FileFormatError(path, f'{twice!r} appears twice', field='POINT:LABELS')
@@ -87,6 +89,8 @@ def read_c3d(path: str | Path, emg: tuple[str, ...] | None = None) -> RawRecordi
     notes = []
     if any(':' in label for label in labels):
         notes.append(f'{path.name}: subject prefixes of the labels left out.')
+    if len(named) < len(labels):
+        notes.append(f'{path.name}: {len(labels) - len(named)} unlabelled points left out.')
     plates, used = _plates(path, c3d, time)
     if plates:
         notes.append(f'{path.name}: {len(plates)} force plates, corrected by ezc3d.')
@@ -94,12 +98,27 @@ def read_c3d(path: str | Path, emg: tuple[str, ...] | None = None) -> RawRecordi
         path=path,
         names=names,
         time=time,
-        positions=np.ascontiguousarray(points[:3].transpose(2, 1, 0)),
+        positions=np.ascontiguousarray(points[:3, named].transpose(2, 1, 0)),
         units=_text(_parameter(c3d, path, 'POINT', 'UNITS')[0]),
         plates=plates,
         analog=_analog(path, c3d, used, emg),
         notes=tuple(notes),
     )
+
+
+def _point_labels(path: Path, c3d: Any, points: int) -> list[str]:
+    """Return a label for every point; more than 255 stand in LABELS2, LABELS3 and so on."""
+    group = c3d['parameters']['POINT']
+    labels = [_text(name) for name in _parameter(c3d, path, 'POINT', 'LABELS')]
+    extra = 2
+    while len(labels) < points and f'LABELS{extra}' in group:
+        labels += [_text(name) for name in group[f'LABELS{extra}']['value']]
+        extra += 1
+    if len(labels) < points:
+        raise FileFormatError(
+            path, f'{points} points, but {len(labels)} labels', field='POINT:LABELS'
+        )
+    return labels[:points]
 
 
 def _check_size(path: Path, frames: int) -> None:
