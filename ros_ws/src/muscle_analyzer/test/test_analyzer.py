@@ -2,9 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The pipeline: live and recorded blocks, both skeletons, options, and what goes wrong."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
+from human_model.frames import matrix_from_quaternion, quaternion_from_matrix
 from human_model.motion import POINTS
 from human_model.report import SolveStatus
 from human_model.skeleton_2d import Skeleton2D
@@ -136,6 +140,82 @@ def test_predicted_lift_of_the_sagittal_skeleton(analyzer):
     right, left = (result.force[0, names.index(f'vasint_{side}')] for side in 'rl')
     assert right == pytest.approx(left, rel=0.05)
     assert result.compression[0] > 1000.0
+
+
+def test_predicted_lift_may_face_anywhere(analyzer):
+    """Coordinates in the own plane, everything Cartesian turned by 20 degrees and shifted."""
+    plane = Skeleton2D.of(SUBJECT)
+    values = held_posture(plane, POSE_2D, n=3)
+    rates = values.position - plane.standing()
+    straight = replace(values, velocity=rates, acceleration=-5.0 * rates)
+    turn = Rotation.from_euler('z', 20.0, degrees=True).as_matrix()
+    place = np.array([0.4, -0.7, 0.0])
+    turned = replace(
+        straight,
+        points=straight.points @ turn.T + place,
+        frames=quaternion_from_matrix(turn @ matrix_from_quaternion(straight.frames)),
+        ground_force=straight.ground_force @ turn.T,
+        cop=straight.cop @ turn.T + place,
+        hand_force=straight.hand_force @ turn.T,
+    )
+    first, second = (analyzer.analyze(motion, 'l', 'predicted') for motion in (straight, turned))
+    assert second.report.ok
+    # Accelerated: the load would differ by more than this if only places were turned.
+    still = analyzer.analyze(values, 'l', 'predicted')
+    assert np.abs(still.compression - first.compression).max() > 20.0
+    assert second.l5_s1_force == pytest.approx(first.l5_s1_force, abs=1.0)
+    assert second.net_moment_top_down @ turn == pytest.approx(
+        first.net_moment_top_down, abs=0.1
+    )
+    torques = [
+        analyzer.joint_torques(result, motion).torque
+        for result, motion in ((first, straight), (second, turned))
+    ]
+    assert torques[1] == pytest.approx(torques[0], abs=0.2)
+
+
+def test_sagittal_motion_of_another_person_is_refused(analyzer):
+    taller = Skeleton2D.of(Subject('p02', 'male', 90.0, 1.9, 25))
+    with pytest.raises(TransferError, match='away from the skeleton of the subject'):
+        analyzer.analyze(held_posture(taller, POSE_2D))
+
+
+def test_weak_hip_leaves_the_spine_load_good(analyzer, skeleton):
+    """Push the hips sideways: the muscles of the hips cannot, those of the trunk need not."""
+    motion = held_posture(skeleton, POSE_3D)
+    force = motion.ground_force.copy()
+    force[0, :, 1] = (-400.0, 400.0)
+    result = analyzer.analyze(replace(motion, ground_force=force), source='measured')
+    assert result.status[0] == SolveStatus.MUSCLE_TOO_WEAK
+    assert 'reserves help hip_rotation' in result.report.message
+    assert result.spine_status[0] == SolveStatus.OK
+    assert result.torque_status[0] == SolveStatus.OK
+    assert result.good_spine_samples == 1
+    assert result.peak_compression == result.compression[0]
+    weak = analyzer.analyze(held_posture(skeleton, POSE_3D, 4000.0), source='measured')
+    assert weak.spine_status[0] == SolveStatus.MUSCLE_TOO_WEAK
+    assert 'L5_S1_Flex_Ext' in weak.spine_report.message
+    assert weak.torque_status[0] == SolveStatus.OK
+
+
+def test_tracker_status_is_never_forgotten(analyzer, skeleton):
+    motion = held_posture(skeleton, POSE_3D, n=3)
+    tracker = [0, SolveStatus.TRACKER_NO_GROUND_FORCE, SolveStatus.TRACKER_NOT_CONVERGED]
+    result = analyzer.analyze(motion, 'l', 'measured', tracker)
+    expected = [0, SolveStatus.MUSCLE_NO_GROUND_FORCE, SolveStatus.MUSCLE_BAD_INPUT]
+    for status in (result.status, result.spine_status, result.torque_status):
+        assert status.tolist() == expected
+    assert np.isnan(result.l5_s1_force[1:]).all() and np.isnan(result.torque[1:]).all()
+    assert 'TRACKER_NO_GROUND_FORCE' in result.report.message
+    with pytest.raises(InputArrayError, match='tracker status'):
+        analyzer.analyze(motion, 'l', 'measured', [0, 0])
+
+
+def test_preparing_needs_no_subject_and_gives_none(skeleton):
+    made = MuscleAnalyzer()
+    made.prepare()
+    with pytest.raises(NotConfiguredError):
+        made.analyze(held_posture(skeleton, POSE_3D))
 
 
 def test_muscles_too_weak_name_coordinate_and_muscles(analyzer, skeleton):

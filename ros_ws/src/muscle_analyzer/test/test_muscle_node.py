@@ -88,6 +88,7 @@ class Station:
                 self.last_error = status.message
 
     def until(self, condition, what):
+        """Spin until a condition holds; fail by name when patience is over."""
         deadline = time.monotonic() + PATIENCE
         while not condition():
             assert self.process.poll() is None, f'the node ended while waiting for {what}'
@@ -95,6 +96,7 @@ class Station:
             self.executor.spin_once(timeout_sec=0.05)
 
     def transition(self, number):
+        """Ask for a lifecycle transition."""
         service = self.client.create_client(ChangeState, 'muscle_analyzer/change_state')
         self.until(service.service_is_ready, 'life cycle service')
         future = service.call_async(ChangeState.Request(transition=Transition(id=number)))
@@ -102,6 +104,7 @@ class Station:
         assert future.result().success
 
     def send(self, topic, message):
+        """Publish once there is a reader."""
         publisher = self.publishers[topic]
         self.until(lambda: publisher.get_subscription_count() > 0, f'reader of {topic}')
         publisher.publish(message)
@@ -118,6 +121,7 @@ class Station:
         return messages
 
     def bring_up(self):
+        """Configure and activate the node, enter person and task."""
         self.transition(Transition.TRANSITION_CONFIGURE)
         self.transition(Transition.TRANSITION_ACTIVATE)
         self.until(lambda: all(self.client.count_publishers(topic) for topic in OUTPUTS), 'topics')
@@ -125,6 +129,7 @@ class Station:
         self.send('subject', conversions.subject_to_msg(PERSON, 0.0, 'none', 'test'))
 
     def close(self):
+        """Kill the process, whatever it does."""
         self.process.kill()
         self.process.wait(timeout=10.0)
         self.executor.shutdown()
@@ -215,7 +220,7 @@ def test_lifts_are_analysed_with_their_source(station):
         assert first.lift_id == second.lift_id == 'lift_007'
         np.testing.assert_allclose(first.time_from_start, [0.0, 0.01, 0.02], atol=1e-6)
         assert len(second.status) == 2
-    station.until(lambda: station.health.get('failed predictions') == 1, 'count of failed predictions')
+    station.until(lambda: station.health.get('failed predictions') == 1, 'count of failures')
     assert not any(station.got[topic] for topic in ('spine_load', 'muscle_analysis'))
 
 
