@@ -209,3 +209,32 @@ def test_sagittal_motion_may_stand_anywhere(scaled, subject, heading):
         turn @ from_opensim(first.acceleration[thorax]),
         atol=1e-3,
     )
+
+
+def test_deep_postures_are_found_from_upright_standing(scaled, subject):
+    """Random bent and twisted postures, each from scratch, within the goals."""
+    rng = np.random.default_rng(3)
+    skeleton = Skeleton3D.of(subject)
+    points, frames = scaled.points.names, scaled.points.frame_names
+    for _ in range(20):
+        depth = rng.uniform()
+        values = {'pelvis_tilt': -rng.uniform(), 'lumbar_extension': -0.8 * rng.uniform(),
+                  'lumbar_rotation': rng.uniform(-0.3, 0.3), 'pelvis_rotation': rng.normal()}
+        for side in ('_r', '_l'):
+            values |= {
+                'arm_flex' + side: rng.uniform(-0.2, 1.8),
+                'arm_rot' + side: rng.uniform(-0.5, 0.5),
+                'elbow_flex' + side: rng.uniform(0.0, 1.5),
+                'pro_sup' + side: rng.uniform(-0.5, 0.4),
+                'hip_flexion' + side: 2.1 * depth,
+                'hip_rotation' + side: rng.uniform(-0.3, 0.3),
+                'knee_angle' + side: 2.3 * depth,
+                'ankle_angle' + side: 0.5 * depth,
+            }
+        q = skeleton.vector(values, skeleton.standing())
+        motion = skeleton.body_motion([0.0], q, 0.0 * q, 0.0 * q)
+        pose = MotionTransfer(scaled, skeleton).step(motion)
+        assert pose.converged
+        assert max(pose.point_distance[points.index(name)] for name in END_POINTS) <= 5e-3
+        angles = [pose.frame_angle[frames.index(name)] for name in END_FRAMES]
+        assert np.degrees(max(angles)) <= 1.0

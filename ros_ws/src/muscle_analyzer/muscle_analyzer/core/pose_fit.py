@@ -36,6 +36,11 @@ _FIRST_DAMPING = 1e-6
 _DAMPING_DOWN = 0.1
 _DAMPING_UP = 10.0
 _SMALLEST_DAMPING = 1e-12
+# Near a straight elbow the last digits of its turn come slowly and move nothing: a fit has also
+# converged after so many steps that lower the cost by less than this (in squared sigmas: some
+# 1e-8 m of a hand).
+FLAT_COST = 1e-5
+FLAT_STEPS = 3
 
 
 class Targets(NamedTuple):
@@ -273,7 +278,7 @@ def fit_pose(
         Bounds.
     fitted : (n_q,) bool array
     tolerance : float
-        Step below which the fit has converged, rad or m.
+        Step below which the fit has converged, rad or m; see also `FLAT_COST`.
     max_iterations : int
     """
     n_q = start.size
@@ -287,6 +292,7 @@ def fit_pose(
     cost = _cost(targets, residual, q)
     relative_damping = _FIRST_DAMPING
     size = np.inf
+    flat = 0
     for iteration in range(1, max_iterations + 1):
         jacobian = misfit_jacobian(tree, targets, state)
         normal = jacobian.T @ jacobian
@@ -322,10 +328,11 @@ def fit_pose(
                 return PoseFit(q, iteration, cost, size, False)
             relative_damping *= _DAMPING_UP
         relative_damping = max(relative_damping * _DAMPING_DOWN, _SMALLEST_DAMPING)
+        flat = flat + 1 if cost - trial_cost < FLAT_COST else 0
         if trial_cost <= cost:
             q = trial
             cost = trial_cost
-        if size < tolerance:
+        if size < tolerance or flat == FLAT_STEPS:
             return PoseFit(q, iteration, cost, size, True)
     return PoseFit(q, max_iterations, cost, size, False)
 

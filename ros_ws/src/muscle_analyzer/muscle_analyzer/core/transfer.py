@@ -49,7 +49,7 @@ PELVIS_COORDINATES = (
 )  # fmt: skip
 UNREFERENCED = ('pelvis_', 'L5_S1_', 'neck_')
 TOLERANCE = 1e-5
-MAX_ITERATIONS = 50
+MAX_ITERATIONS = 200
 # Points of a motion must be those of its skeleton, or its rates would belong to another motion.
 SAME_POINT = 1e-3
 
