@@ -28,6 +28,7 @@ from motion_tracker import conversions
 from motion_tracker.core.configuration import tracker_from
 from motion_tracker.core.errors import MotionTrackerError
 from motion_tracker.core.force_plates import SIDES
+from motion_tracker.core.recordings import RecordingSplitter
 from motion_tracker.core.tracked import DetectedEvent, Notice, Output, TrackedFrame
 from motion_tracker.core.tracked import MeasuredLift as TrackedLift
 from motion_tracker.core.tracker import MotionTracker
@@ -36,8 +37,9 @@ from motion_tracker.core.warm_up import warm_up
 #: Samples kept until person and task are known: 20 s of two 2500 Hz plates.
 EARLY_SAMPLES: Final = 100_000
 
-#: A stamp this much before the newest one begins another recording [s].
-RESTART: Final = 5.0
+#: Topics of the input streams.
+STREAMS: Final = {'markers': 'markers', 'box': 'box/pose',
+                  **{side: f'force_plates/{side}/wrench' for side in SIDES}}
 
 #: Marker frames between two reports of refused input.
 COUNT_FRAMES: Final = 500
@@ -57,8 +59,9 @@ class MotionTrackerNode(PipelineNode):
         self._subject: tuple[Subject, str] | None = None
         self._task: tuple[float, npt.NDArray[np.float64]] | None = None
         self._tracker: MotionTracker | None = None
-        self._early: deque[tuple[float, Feed]] = deque(maxlen=EARLY_SAMPLES)
-        self._newest = -float('inf')
+        self._early: deque[Feed] = deque(maxlen=EARLY_SAMPLES)
+        self._splitter: RecordingSplitter[Feed] = RecordingSplitter()
+        self._recording = 0
         self._lifts = 0
         self._frames = 0
         self._joints = self.advertise(JointState, 'joint_states', qos.FRAMES)
@@ -69,10 +72,10 @@ class MotionTrackerNode(PipelineNode):
                      for side in SIDES]
         self.subscribe(SubjectMsg, 'subject', self._on_subject, qos.LATCHED)
         self.subscribe(Task, 'task', self._on_task, qos.LATCHED)
-        self.subscribe(Markers, 'markers', self._on_markers, qos.FRAMES)
-        self.subscribe(PoseStamped, 'box/pose', self._on_box, qos.FRAMES)
+        self.subscribe(Markers, STREAMS['markers'], self._on_markers, qos.FRAMES)
+        self.subscribe(PoseStamped, STREAMS['box'], self._on_box, qos.FRAMES)
         for side in SIDES:
-            self.subscribe(WrenchStamped, f'force_plates/{side}/wrench',
+            self.subscribe(WrenchStamped, STREAMS[side],
                            partial(self._on_wrench, side), qos.PLATES)
         self._flush_service = self.create_service(Trigger, '~/flush', self._on_flush)
 
@@ -105,32 +108,40 @@ class MotionTrackerNode(PipelineNode):
         self._frames += 1
         if self._frames % COUNT_FRAMES == 0:
             self._report_counts()
-        self._take(stamp, lambda tracker: tracker.push_markers(stamp, names, positions))
+        self._take('markers', stamp, lambda tracker: tracker.push_markers(stamp, names, positions))
 
     def _on_box(self, message: PoseStamped) -> None:
         stamp, position = conversions.box_from_msg(message)
-        self._take(stamp, lambda tracker: tracker.push_box(stamp, position))
+        self._take('box', stamp, lambda tracker: tracker.push_box(stamp, position))
 
     def _on_wrench(self, side: str, message: WrenchStamped) -> None:
         stamp, force, moment = conversions.wrench_from_msg(message)
-        self._take(stamp, lambda tracker: tracker.push_wrench(side, stamp, force, moment))
+        self._take(side, stamp, lambda tracker: tracker.push_wrench(side, stamp, force, moment))
 
-    def _take(self, stamp: float, feed: Feed) -> None:
-        """Feed one sample to the tracker, or keep it until person and task are known."""
+    def _take(self, stream: str, stamp: float, feed: Feed) -> None:
+        """Feed one sample to the tracker of its recording."""
         if not self.active:
             self.counts['samples while not active'] += 1
             return
-        if stamp < self._newest - RESTART:
-            self.get_logger().info('stamps went back: another recording begins')
-            self._end_recording()
-        self._newest = max(self._newest, stamp)
-        tracker = self._ready()
-        if tracker is None:
+        if self._splitter.idle:
+            self._splitter.expect(
+                name for name, topic in STREAMS.items() if self.count_publishers(topic))
+        self._feed(self._splitter.push(stream, stamp, feed))
+
+    def _feed(self, samples: Sequence[tuple[int, Feed]]) -> None:
+        """Feed samples, or keep them until person and task are known."""
+        for recording, feed in samples:
+            if recording != self._recording:
+                self.get_logger().info('stamps went back: another recording begins')
+                self._end_recording()
+                self._recording = recording
+            tracker = self._ready()
+            if tracker is not None:
+                self._publish(feed(tracker))
+                continue
             if len(self._early) == EARLY_SAMPLES:
                 self.counts['samples lost before person and task'] += 1
-            self._early.append((stamp, feed))
-            return
-        self._publish(feed(tracker))
+            self._early.append(feed)
 
     def _ready(self) -> MotionTracker | None:
         """Tracker of this recording, made when person and task are known."""
@@ -150,9 +161,8 @@ class MotionTrackerNode(PipelineNode):
     def _work_off_early(self) -> None:
         tracker = self._ready()
         while tracker is not None and self._early:
-            _, feed = self._early.popleft()
             try:
-                self._publish(feed(tracker))
+                self._publish(self._early.popleft()(tracker))
             except self.INPUT_ERRORS as error:
                 self.report_error(str(error))
 
@@ -163,13 +173,14 @@ class MotionTrackerNode(PipelineNode):
             self._report_counts()
             self._lifts = self._tracker.lifts
             self._tracker = None
-        self._newest = -float('inf')
 
     def _on_flush(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """End of the recording: nothing more will come."""
         begun = self._tracker is not None
         before = self._lifts
+        self._feed(self._splitter.end())
         self._end_recording()
+        self._recording = self._splitter.current
         response.success = begun
         response.message = (f'{self._lifts - before} lifts' if begun else
                             'no recording under way: neither person, task nor samples came')
