@@ -14,6 +14,7 @@ from human_model.report import SolveStatus
 from human_model.skeleton_2d import Skeleton2D
 from human_model.skeleton_3d import Skeleton3D
 from human_model.subject import Subject
+from muscle_analyzer.core import load_solver
 from muscle_analyzer.core.analyzer import MuscleAnalyzer, MuscleAnalyzerOptions
 from muscle_analyzer.core.exceptions import (
     InputArrayError,
@@ -21,6 +22,7 @@ from muscle_analyzer.core.exceptions import (
     OptionError,
     TransferError,
 )
+from muscle_analyzer.core.reserves import read_reserves
 
 SUBJECT = Subject('p01', 'male', 63.5, 1.69, 25)
 WEIGHT = 63.5 * 9.81
@@ -196,6 +198,28 @@ def test_weak_hip_leaves_the_spine_load_good(analyzer, skeleton):
     assert weak.spine_status[0] == SolveStatus.MUSCLE_TOO_WEAK
     assert 'L5_S1_Flex_Ext' in weak.spine_report.message
     assert weak.torque_status[0] == SolveStatus.OK
+
+
+def test_spine_load_does_not_hang_on_how_weak_hips_are_helped(analyzer, skeleton, monkeypatch):
+    """Hip reserves a hundred times as cheap take over from the muscles: same force on L5."""
+
+    def generous(names):
+        return tuple(
+            replace(reserve, torque=100.0) if reserve.coordinate.startswith('hip') else reserve
+            for reserve in read_reserves(names)
+        )
+
+    motion = held_posture(skeleton, POSE_3D)
+    force = motion.ground_force.copy()
+    force[0, :, 1] = (-400.0, 400.0)
+    motion = replace(motion, ground_force=force)
+    weak = analyzer.analyze(motion, source='measured')
+    monkeypatch.setattr(load_solver, 'read_reserves', generous)
+    other = MuscleAnalyzer()
+    other.configure(SUBJECT)
+    helped = other.analyze(motion, source='measured')
+    assert np.abs(helped.reserve - weak.reserve).max() > 5.0
+    assert helped.l5_s1_force[0] == pytest.approx(weak.l5_s1_force[0], rel=0.01, abs=10.0)
 
 
 def test_tracker_status_is_never_forgotten(analyzer, skeleton):
