@@ -165,15 +165,35 @@ def _bounded_step(hessian: Array, gradient: Array, free: IntArray, damping: floa
 
 
 @numba.njit(cache=True)
-def data_curvature(tree: TreeArrays, q: Array, body: IntArray, local: Array,
-                   weight: Array) -> Array:
-    """Diagonal of the Gauss-Newton Hessian of the marker terms (n_q,) [m^2 or 1]."""
+def _add_pairs(hessian: Array, pair: IntArray, share: Array, pair_weight: Array) -> None:
+    """Add half the Hessian of the terms that tie two coordinates."""
+    for k in range(pair.shape[0]):
+        a, b, s = pair[k, 0], pair[k, 1], share[k]
+        hessian[a, a] += pair_weight[k] * (1.0 - s) ** 2
+        hessian[b, b] += pair_weight[k] * s**2
+        hessian[max(a, b), min(a, b)] -= pair_weight[k] * s * (1.0 - s)
+
+
+@numba.njit(cache=True)
+def seen_curvature(tree: TreeArrays, q: Array, body: IntArray, local: Array, weight: Array,
+                   pair: IntArray, share: Array, pair_weight: Array, floor: float) -> Array:
+    """Curvature (n_q,) [m^2 or 1] of the fit about each coordinate, all others free to follow.
+
+    The reciprocal diagonal of the inverse Hessian of the marker and pair terms, plus ``floor``
+    on the diagonal: what is near the floor is not determined by the markers.
+    """
     rotation, origin, axis = body_frames(tree, q)
     position = _positions(rotation, origin, body, local)
-    hessian = np.zeros((q.shape[0], q.shape[0]))
-    gradient = np.zeros(q.shape[0])
+    n_q = q.shape[0]
+    hessian = np.zeros((n_q, n_q))
+    gradient = np.zeros(n_q)
     _normal_equations(tree, origin, axis, position, body, position, weight, hessian, gradient)
-    return np.diag(hessian).copy()
+    _add_pairs(hessian, pair, share, pair_weight)
+    for a in range(n_q):
+        hessian[a, a] += floor
+        for b in range(a):
+            hessian[b, a] = hessian[a, b]
+    return 1.0 / np.diag(np.linalg.inv(hessian))
 
 
 @numba.njit(cache=True)
@@ -210,9 +230,7 @@ def fit(tree: TreeArrays, start: Array, lower: Array, upper: Array, body: IntArr
             split = (1.0 - s) * q[a] - s * q[b]
             gradient[a] += pair_weight[k] * (1.0 - s) * split
             gradient[b] -= pair_weight[k] * s * split
-            hessian[a, a] += pair_weight[k] * (1.0 - s) ** 2
-            hessian[b, b] += pair_weight[k] * s**2
-            hessian[max(a, b), min(a, b)] -= pair_weight[k] * s * (1.0 - s)
+        _add_pairs(hessian, pair, share, pair_weight)
         count = 0
         free = np.empty(n_q, dtype=np.int64)
         stationarity = 0.0

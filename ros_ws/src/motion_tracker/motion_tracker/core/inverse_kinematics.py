@@ -25,7 +25,7 @@ from human_model.compiled import point_positions
 from human_model.report import SolveStatus
 from human_model.skeleton import Skeleton
 from motion_tracker.core.errors import InverseKinematicsError
-from motion_tracker.core.ik_kernel import data_curvature, fit
+from motion_tracker.core.ik_kernel import fit, seen_curvature
 from motion_tracker.core.marker_model import MarkerModel
 from motion_tracker.core.marker_set import DATA, mirror_name
 
@@ -53,7 +53,8 @@ class IKSettings:
     held_weight : float
         Of the previous value of a coordinate that no marker sees in this frame [m^2/rad^2].
     seen_curvature : float
-        A coordinate counts as seen when the markers' curvature about it exceeds this [m^2/rad^2].
+        A coordinate counts as seen when the curvature of the fit about it, all others free to
+        follow, exceeds this [m^2/rad^2]: a marker 3 cm off the axis.
     max_residual, rms_residual : float
         A frame whose largest or root mean square distance exceeds this is not good data [m].
     max_iterations : int
@@ -172,8 +173,9 @@ class InverseKinematics:
         blind = 'lumbar' not in model.segments
         self._pair_weight = np.full(len(prior), self.settings.blind_spine_weight if blind
                                     else self.settings.spine_weight)
+        self._seen_by: dict[bytes, npt.NDArray[np.bool_]] = {}
         #: Coordinates seen when all markers are seen.
-        self.seen = self._seen(skeleton.standing(), model.weights)
+        self.seen = self._seen(model.weights)
         if not self.seen[place].all():
             lost = [skeleton.coordinates[j] for j in np.flatnonzero(place & ~self.seen)]
             raise InverseKinematicsError(f'the markers {", ".join(model.names)} do not determine '
@@ -184,9 +186,15 @@ class InverseKinematics:
         """Coordinates that even the full marker set does not see; they stay at neutral."""
         return tuple(self.skeleton.coordinates[j] for j in np.flatnonzero(~self.seen))
 
-    def _seen(self, q: Array, weight: Array) -> npt.NDArray[np.bool_]:
-        curvature = data_curvature(self.skeleton.tree, q, self._body, self._local, weight)
-        return np.asarray(curvature > self.settings.seen_curvature)
+    def _seen(self, weight: Array) -> npt.NDArray[np.bool_]:
+        """Coordinates (n_q,) that the markers of positive weight determine, by set of markers."""
+        key = (weight > 0).tobytes()
+        if key not in self._seen_by:
+            curvature = seen_curvature(
+                self.skeleton.tree, self.skeleton.standing(), self._body, self._local, weight,
+                self._pair, self._share, self._pair_weight, self.settings.neutral_weight)
+            self._seen_by[key] = np.asarray(curvature > self.settings.seen_curvature)
+        return self._seen_by[key]
 
     def predict(self, q: npt.ArrayLike) -> Array:
         """Marker positions (n_markers, 3) [m] at coordinates q."""
@@ -218,8 +226,7 @@ class InverseKinematics:
         weight = np.where(missing, 0.0, self.model.weights)
         target[missing] = 0.0
         last = None if previous is None else np.ascontiguousarray(previous, dtype=np.float64)
-        seen = self._seen(self.skeleton.standing() if last is None else last, weight)
-        held = self.seen & ~seen
+        held = self.seen & ~self._seen(weight)
         if held[self._place].any() or not weight.any():
             return self._lost(target, weight, last, held)
         q, position, iterations, converged, value, stationarity = self._best(

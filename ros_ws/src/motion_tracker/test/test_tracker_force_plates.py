@@ -1,0 +1,95 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Centre of pressure, free moment, thresholds and the check of the body mass."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from motion_tracker.core.errors import ForcePlateError
+from motion_tracker.core.force_plates import (
+    STANDARD_GRAVITY,
+    MassWatch,
+    PlateGeometry,
+    check_body_mass,
+    ground_reaction,
+    total_reaction,
+)
+
+shear = st.floats(-100.0, 100.0)
+place = st.floats(-0.5, 0.5)
+
+
+def plate(turn=0.0, height=0.05):
+    c, s = np.cos(turn), np.sin(turn)
+    # Turned about the vertical and upside down, as plates with z downward are.
+    rotation = np.array([[c, s, 0.0], [s, -c, 0.0], [0.0, 0.0, -1.0]])
+    return PlateGeometry('plate', np.array([0.3, -0.2, height - 0.04]), rotation, height)
+
+
+@settings(max_examples=60)
+@given(x=place, y=place, fx=shear, fy=shear, fz=st.floats(50.0, 2000.0),
+       tz=st.floats(-20.0, 20.0), turn=st.floats(-3.0, 3.0))
+def test_a_known_force_at_a_known_place_is_found_again(x, y, fx, fy, fz, tz, turn):
+    geometry = plate(turn)
+    at, force = np.array([x, y, 0.05]), np.array([fx, fy, fz])
+    moment = np.cross(at - geometry.origin, force) + [0.0, 0.0, tz]
+    foot = ground_reaction(force @ geometry.rotation, moment @ geometry.rotation, geometry, 20.0)
+    assert foot.cop[0] == pytest.approx(at, abs=1e-9)
+    assert foot.force[0] == pytest.approx(force, abs=1e-9)
+    assert foot.free_moment[0] == pytest.approx([0.0, 0.0, tz], abs=1e-8)
+
+
+def test_below_the_threshold_a_foot_is_silent():
+    foot = ground_reaction([[1.0, 2.0, 19.9], [1.0, 2.0, 20.1]], np.ones((2, 3)),
+                           PlateGeometry('right'), 20.0)
+    assert foot.loaded.tolist() == [False, True]
+    assert np.isnan(foot.cop[0]).all()
+    assert np.isfinite(foot.cop[1]).all()
+    assert not foot.force[0].any()
+    assert not foot.free_moment[0].any()
+
+
+def test_total_centre_of_pressure_is_weighted_by_the_load():
+    feet = [ground_reaction([[0.0, 0.0, load]], [[0.0, -x * load, 0.0]], PlateGeometry('p'), 20.0)
+            for x, load in ((0.1, 300.0), (0.4, 100.0))]
+    force, cop = total_reaction(feet)
+    assert force[0] == pytest.approx([0.0, 0.0, 400.0])
+    assert cop[0] == pytest.approx([0.175, 0.0, 0.0])
+
+
+def test_total_of_unloaded_feet_has_no_place():
+    foot = ground_reaction(np.zeros((1, 3)), np.zeros((1, 3)), PlateGeometry('p'), 20.0)
+    force, cop = total_reaction([foot, foot])
+    assert not force.any()
+    assert np.isnan(cop).all()
+
+
+@pytest.mark.parametrize(('mass', 'ok'), [(60.1, True), (58.0, False), (66.0, False)])
+def test_weight_off_by_more_than_five_percent_is_told(mass, ok):
+    rng = np.random.default_rng(4)
+    moving = 600.0 + 80.0 * np.sin(np.arange(300) / 10.0)
+    quiet = 62.6 * STANDARD_GRAVITY + rng.normal(0.0, 1.0, 100)
+    check = check_body_mass(np.concatenate([moving, quiet, moving]), 100.0, mass)
+    assert check.plate_mass == pytest.approx(62.6, abs=0.1)
+    assert check.ok is ok
+    assert f'{mass:.1f} kg' in str(check)
+
+
+def test_mass_is_checked_once_and_only_in_quiet_standing():
+    watch = MassWatch(70.0, 0.05)
+    moving = [watch.push(700.0 + 70.0 * np.sin(i / 5.0), 100.0) for i in range(300)]
+    assert not any(moving)
+    found = [check for _ in range(200) if (check := watch.push(600.0, 100.0)) is not None]
+    assert len(found) == 1
+    assert not found[0].ok
+
+
+def test_geometry_is_checked():
+    with pytest.raises(ForcePlateError, match='left.rotation'):
+        PlateGeometry('left', rotation=np.diag([1.0, 1.0, -1.0]))
+    with pytest.raises(ForcePlateError, match='left.origin'):
+        PlateGeometry('left', origin=np.array([0.0, np.nan, 0.0]))
+    with pytest.raises(ForcePlateError, match='threshold'):
+        ground_reaction(np.zeros((1, 3)), np.zeros((1, 3)), PlateGeometry('p'), 0.0)

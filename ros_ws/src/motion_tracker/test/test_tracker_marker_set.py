@@ -1,0 +1,118 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Marker sets: the files themselves, scaling, and refusal of damaged ones."""
+
+import numpy as np
+import pytest
+
+from human_model.anthropometry import segment_lengths
+from human_model.skeleton_3d import Skeleton3D
+from human_model.subject import Subject
+from motion_tracker.core.errors import MarkerSetError
+from motion_tracker.core.joint_centres import joint_centres, load_joint_definitions
+from motion_tracker.core.marker_model import from_anthropometry
+from motion_tracker.core.marker_set import (
+    COLUMNS,
+    DATA,
+    REFERENCE_SUBJECT,
+    available,
+    load_marker_set,
+    mirror_name,
+)
+
+HEADER = ','.join(COLUMNS)
+
+
+def test_the_sets_have_the_size_their_names_say():
+    assert available() == ('opencap_lab_51', 'plug_in_gait_58')
+    assert len(load_marker_set('plug_in_gait_58').names) == 58
+    # Four medial markers more, worn in the static trial only.
+    assert len(load_marker_set('opencap_lab_51').names) == 51 + 4
+
+
+@pytest.mark.parametrize('name', ['opencap_lab_51', 'plug_in_gait_58'])
+def test_every_marker_sits_on_a_segment_of_the_skeleton_and_names_its_source(name):
+    segments = Skeleton3D.of(REFERENCE_SUBJECT).segments
+    for marker in load_marker_set(name).markers:
+        assert marker.segment in segments
+    rows = (DATA / 'marker_sets' / f'{name}.csv').read_text(encoding='utf-8').splitlines()[1:]
+    assert all('placement' in row and ('position' in row or 'ANSUR' in row or 'de Leva' in row)
+               for row in rows)
+
+
+def test_joint_centres_of_the_marker_set_are_those_of_the_skeleton(person, skeleton, marker_set):
+    """Landmarks and skeleton describe one anatomy, also for other than the reference person."""
+    frames = skeleton.forward(np.zeros(len(skeleton.coordinates)))
+    markers = {}
+    for name, local in marker_set.positions(skeleton.parameters.lengths).items():
+        frame = frames[skeleton.segments.index(marker_set.marker(name).segment)]
+        markers[name] = frame[:3, :3] @ local + frame[:3, 3]
+    points = skeleton.points(np.zeros(len(skeleton.coordinates)))
+    definitions = [d for d in load_joint_definitions('plug_in_gait_58')
+                   if not d.joint.startswith('shoulder')]
+    for joint, centre in joint_centres(tuple(definitions), markers, {}).items():
+        if joint.startswith('hip'):
+            # Harrington's regression puts the hips wider than the model's: sagittal plane only.
+            assert centre[[0, 2]] == pytest.approx(points[joint][[0, 2]], abs=5e-3), joint
+        else:
+            assert centre == pytest.approx(points[joint], abs=1e-3), joint
+
+
+def test_positions_scale_with_the_lengths_they_name(marker_set):
+    small = Subject('small', 'female', 52.0, 1.55, 30.0)
+    reference = marker_set.positions(segment_lengths(REFERENCE_SUBJECT)[0])
+    scaled = marker_set.positions(segment_lengths(small)[0])
+    for marker in marker_set.markers:
+        assert reference[marker.name] == pytest.approx(marker.position)
+    ratio = (segment_lengths(small)[0]['thigh'] / segment_lengths(REFERENCE_SUBJECT)[0]['thigh'])
+    assert scaled['LKNE'] == pytest.approx(reference['LKNE'] * ratio)
+
+
+def test_left_and_right_are_mirrored_where_the_set_does_not_say_otherwise(marker_set):
+    for marker in marker_set.markers:
+        other = mirror_name(marker.name, marker_set.names)
+        if marker.name[0] != 'L' or marker.name[1:] in ('1', 'UPA', 'FRM', 'THI', 'TIB'):
+            continue
+        assert other is not None
+        twin = marker_set.marker(other)
+        assert np.array(twin.position) == pytest.approx(np.array(marker.position) * [1, -1, 1])
+
+
+@pytest.mark.parametrize(('name', 'mirrored'), [
+    ('LKNE', 'RKNE'), ('RKNE', 'LKNE'), ('r_knee', 'L_knee'), ('L.ASIS', 'r.ASIS'), ('C7', None),
+    ('RBAK', None)])
+def test_mirror_names(name, mirrored):
+    names = ('LKNE', 'RKNE', 'L_knee', 'r_knee', 'L.ASIS', 'r.ASIS', 'C7', 'RBAK')
+    assert mirror_name(name, names) == mirrored
+
+
+@pytest.mark.parametrize(('row', 'words'), [
+    ('A,pelvis,0.1,0,x,thigh,1,yes,d,s', 'line 2'),
+    ('A,pelvis,0.1,0,,thigh,1,yes,d,s', 'incomplete'),
+    ('A,pelvis,0.1,0,0,thihg,1,yes,d,s', "'thihg' is no segment length"),
+    ('A,pelvis,0.1,0,0,thigh,-1,yes,d,s', 'weight'),
+    ('A,pelvis,0.1,0,0,thigh,1,maybe,d,s', 'maybe'),
+    ('A,pelvis,0.1,0,0,thigh shank,1,yes,d,s', 'neither one nor'),
+    ('A,pelvis,0,0,0,thigh,1,yes,d,s\nA,pelvis,0,0,0,thigh,1,yes,d,s', "'A' occurs 2"),
+])
+def test_damaged_files_are_refused_by_file_line_and_field(tmp_path, row, words):
+    path = tmp_path / 'own_set.csv'
+    path.write_text(f'{HEADER}\n{row}\n', encoding='utf-8')
+    with pytest.raises(MarkerSetError, match=words):
+        load_marker_set(path)
+
+
+def test_missing_column_and_unknown_set_are_named(tmp_path):
+    path = tmp_path / 'own_set.csv'
+    path.write_text('marker,segment\nA,pelvis\n', encoding='utf-8')
+    with pytest.raises(MarkerSetError, match="own_set.csv: column 'x'"):
+        load_marker_set(path)
+    with pytest.raises(MarkerSetError, match='plug_in_gait_58'):
+        load_marker_set('plug_in_gate')
+
+
+def test_a_set_without_positions_needs_a_static_trial(tmp_path, person):
+    path = tmp_path / 'own_set.csv'
+    path.write_text(f'{HEADER}\nA,pelvis,,,,,1,yes,d,s\n', encoding='utf-8')
+    with pytest.raises(MarkerSetError, match='static trial'):
+        from_anthropometry(load_marker_set(path), person)
