@@ -16,8 +16,9 @@ HEADER = """<!-- SPDX-FileCopyrightText: 2026 The lift monitor authors -->
 <!-- Written by docs/parameters_table.py: do not edit. -->
 # Parameters of the nodes
 
-Read when a node starts (`ros2 run ... --ros-args -p name:=value`, or `config/<node>.yaml`) and not changed after that. A
-value of the wrong type, out of range or not among the choices ends the node with a message that names it.
+Read when a node starts (`ros2 run ... --ros-args -p name:=value`, or `config/<node>.yaml`)
+and not changed after that. A value of the wrong type, out of range or not among the choices
+ends the node with a message that names it.
 """
 
 
@@ -47,7 +48,8 @@ def page() -> str:
     """Return the page."""
     parts = [HEADER]
     for node, table in tables().items():
-        parts.append(f'## {node}\n\n| name | meaning | unit | default | allowed |\n|---|---|---|---|---|')
+        parts += [f'## {node}\n', '| name | meaning | unit | default | allowed |']
+        parts.append('|---' * 5 + '|')
         parts += [
             f'| `{name}` | {entry["description"]} | {entry["unit"]} | {_shown(entry["default"])} '
             f'| {_allowed(entry)} |'

@@ -8,6 +8,7 @@ import argparse
 import ast
 import re
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -35,12 +36,22 @@ def alternatives(name: str) -> list[str]:
     return [match[1] + word + match[3] for word in match[2].split(',')]
 
 
-def topic_names(node: ast.expr, assigned: dict[str, ast.expr]) -> list[str]:
-    """Return the topics an expression stands for; variables as in VARIABLES."""
+def topic_names(node: ast.expr, assigned: dict[str, ast.expr], values: object) -> list[str]:
+    """Return the topics an expression stands for; variables as in VARIABLES.
+
+    Tables of the node's module are looked up in `values`, the imported module.
+    """
     if isinstance(node, ast.Name):
         node = assigned[node.id]
     if isinstance(node, ast.Constant):
         return [str(node.value)]
+    if isinstance(node, ast.Subscript):
+        assert isinstance(node.value, ast.Name), ast.dump(node)
+        keys = [node.slice.value] if isinstance(node.slice, ast.Constant) else []
+        if isinstance(node.slice, ast.Name):
+            keys = list(VARIABLES[node.slice.id])
+        assert keys, ast.dump(node)
+        return [getattr(values, node.value.id)[key] for key in keys]
     assert isinstance(node, ast.JoinedStr), ast.dump(node)
     names = ['']
     for part in node.values:
@@ -66,6 +77,7 @@ def endpoints(package: str, methods: tuple[str, ...]) -> dict[str, Endpoint]:
     """Return type and quality of service by topic of what a node's source opens."""
     source = (SOURCES / package / package / f'{package}_node.py').read_text(encoding='utf-8')
     tree = ast.parse(source)
+    module = import_module(f'{package}.{package}_node')
     types = full_types(tree)
     assigned = {
         target.id: node.value
@@ -81,7 +93,7 @@ def endpoints(package: str, methods: tuple[str, ...]) -> dict[str, Endpoint]:
         quality = [argument.attr for argument in node.args
                    if isinstance(argument, ast.Attribute) and argument.attr in QUALITIES]
         assert isinstance(kind, ast.Name) and len(quality) == 1, ast.dump(node)
-        for name in topic_names(node.args[1], assigned):
+        for name in topic_names(node.args[1], assigned, module):
             found[name] = (types[kind.id], QUALITIES[quality[0]])
     return found
 
