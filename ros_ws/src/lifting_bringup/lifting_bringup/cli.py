@@ -17,6 +17,9 @@ from lifting_bringup.graph_errors import GraphError
 #: The recording that `lift demo` plays.
 DEMO_BAG = 'symmetric_12kg'
 
+#: Exit code after an interrupt from the keyboard, as shells have it (128 + SIGINT).
+STOPPED = 130
+
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; return the exit code."""
@@ -27,6 +30,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except (BagError, GraphError) as error:
         print(f'lift {options.command}: {error}', file=sys.stderr)
         return 1
+    except KeyboardInterrupt:
+        print(f'lift {options.command}: stopped', file=sys.stderr)
+        return STOPPED
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -18,8 +18,8 @@ from rclpy.qos import (
 
 #: Samples of a 2500 Hz force plate in 16 s: how far a reader may fall behind without loss.
 PLATE_DEPTH = 40_000
-#: Frames of a 100 Hz stream in 60 s.
-FRAME_DEPTH = 6_000
+#: Frames of a 100 Hz stream in 200 s: what an analysis at ten times real time may lag behind.
+FRAME_DEPTH = 20_000
 #: Lifts kept for a reader that joins late.
 LIFT_DEPTH = 100
 
