@@ -131,25 +131,26 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _play(options: argparse.Namespace) -> int:
+    from lifting_bringup.bags.keyboard import space_bar_pauses
     from lifting_bringup.bags.player import PlayControl, PlayOptions, play
 
     control = PlayControl(paused=options.start_paused)
     signal.signal(signal.SIGTERM, lambda *_: control.stop())
     signal.signal(signal.SIGINT, lambda *_: control.stop())
-    report = play(
-        PlayOptions(
-            options.bag,
-            rate=options.rate,
-            loop=options.loop,
-            start=options.start,
-            namespace=options.station,
-            start_paused=options.start_paused,
-            wait_for=dict.fromkeys(options.wait_for, 1),
-            wait_timeout=options.wait_timeout,
-        ),
-        control,
-        print,
+    play_options = PlayOptions(
+        options.bag,
+        rate=options.rate,
+        loop=options.loop,
+        start=options.start,
+        namespace=options.station,
+        start_paused=options.start_paused,
+        wait_for=dict.fromkeys(options.wait_for, 1),
+        wait_timeout=options.wait_timeout,
     )
+    with space_bar_pauses(control) as listening:
+        if listening:
+            print('the space bar pauses and resumes')
+        report = play(play_options, control, print)
     total = sum(report.messages.values())
     print(
         f'{total} messages in {report.wall_time:.2f} s; late by '
