@@ -1,0 +1,117 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""A recording through the graph of processes, and through the same pipelines in one process."""
+
+import numpy as np
+import pytest
+
+from lifting_bringup.bags.reader import BagReader
+from lifting_bringup.results_file import MEASURED, PREDICTED, read_results, seconds
+from lifting_bringup.session import RunOptions, run_online
+
+BAG = 'symmetric_12kg'
+#: Agreed: peaks of the two ways.
+PEAK_LIMIT = 0.01
+
+pytestmark = pytest.mark.timeout(180)
+
+
+@pytest.fixture(scope='module')
+def online(bags, tmp_path_factory):
+    """Run the graph in processes at twice real time; return its report."""
+    output = tmp_path_factory.mktemp('online')
+    return run_online(RunOptions(bags / BAG, output, rate=2.0, settle_timeout=60.0))
+
+
+@pytest.fixture(scope='module')
+def both(online, offline, bags):
+    """Return the results of both ways: online, offline."""
+    return read_results(online.results), read_results(offline(bags / BAG))
+
+
+def key(alarm):
+    """Return what two equal alarms have in common but rounding."""
+    return (
+        round(seconds(alarm.header.stamp), 6),
+        alarm.alarm_id,
+        alarm.state,
+        alarm.previous_state,
+        alarm.lift_id,
+        alarm.occurrence_id,
+    )
+
+
+def live_stamps(path):
+    """Return the stamps [ns] of all live samples of the spine load, in the file's order."""
+    with BagReader(path) as bag:
+        (topic,) = [name for name in bag.topics if name.endswith('/spine_load')]
+        headers = [m.header.stamp for _, _, m in bag.messages([topic]) if m.source == m.LIVE]
+    return np.array([stamp.sec * 10**9 + stamp.nanosec for stamp in headers])
+
+
+def test_no_process_died(online):
+    assert set(online.exit_codes) == {
+        'recorder', 'motion_tracker', 'lift_predictor', 'muscle_analyzer', 'injury_monitor',
+    }  # fmt: skip
+    assert set(online.exit_codes.values()) <= {0, -15}
+
+
+def test_nothing_is_lost(online, offline, bags):
+    with BagReader(bags / BAG) as bag:
+        frames = bag.topics['/markers'].count
+    stamps = live_stamps(online.results)
+    assert stamps.size == frames
+    assert np.all(np.diff(stamps) > 0)
+    np.testing.assert_array_equal(stamps, np.sort(live_stamps(offline(bags / BAG))))
+
+
+def test_every_lift_is_assessed(both):
+    for results in both:
+        assert list(results.lifts) == ['lift_001']
+        single = results.lifts['lift_001'].single
+        assert set(single) == {
+            'measured_lift', 'predicted_lift', 'lift_comparison', 'risk_assessment',
+        }  # fmt: skip
+        assert results.lost == ''
+    assert all(results.alarms for results in both)
+
+
+@pytest.mark.parametrize('source', [MEASURED, PREDICTED])
+def test_peaks_of_l5_s1_are_equal(both, source):
+    peaks = []
+    for results in both:
+        load = results.lifts['lift_001'].blocks['spine_load', source]
+        assert not np.any(load.status)
+        peaks.append([np.max(load.compression), np.max(load.anterior_shear)])
+    assert min(peaks[0]) > 100.0
+    assert peaks[0] == pytest.approx(peaks[1], rel=PEAK_LIMIT)
+
+
+def test_live_loads_are_equal(online, offline, bags):
+    series = []
+    for path in (online.results, offline(bags / BAG)):
+        with BagReader(path) as bag:
+            (topic,) = [name for name in bag.topics if name.endswith('/spine_load')]
+            rows = [
+                (*m.status, *m.compression, *m.anterior_shear)
+                for _, _, m in bag.messages([topic])
+                if m.source == m.LIVE
+            ]
+        series.append(np.array(rows))
+    np.testing.assert_array_equal(series[0][:, 0], series[1][:, 0])
+    np.testing.assert_allclose(series[0], series[1], rtol=PEAK_LIMIT, atol=1.0)
+
+
+def test_alarms_are_equal(both):
+    first, second = (sorted(results.alarms, key=key) for results in both)
+    assert [key(alarm) for alarm in first] == [key(alarm) for alarm in second]
+    for one, other in zip(first, second, strict=True):
+        assert (one.value, one.limit, one.margin) == pytest.approx(
+            (other.value, other.limit, other.margin), rel=PEAK_LIMIT, abs=PEAK_LIMIT
+        )
+
+
+def test_assessments_are_equal(both):
+    first, second = (r.lifts['lift_001'].single['risk_assessment'] for r in both)
+    assert first.zone == second.zone
+    assert first.summary == second.summary
