@@ -81,7 +81,7 @@ def read_wrenches(path):
 
 @pytest.fixture(scope='session')
 def squats():
-    """The public recording of five squats, calibrated from its static trial."""
+    """Return the public recording of five squats, calibrated from its static trial."""
     if not SQUATS.is_dir():
         pytest.skip(f'the recording is not at {SQUATS}')
     subject = Subject('S04', 'female', 62.6, 1.68, 30.0)

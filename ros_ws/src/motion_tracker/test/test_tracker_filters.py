@@ -96,9 +96,9 @@ def test_long_gaps_and_gaps_at_the_ends_stay():
 
 @pytest.mark.parametrize(('rate', 'cutoff'), [(100.0, 50.0), (100.0, 0.0), (-1.0, 6.0)])
 def test_impossible_cutoffs_are_refused(rate, cutoff):
-    with pytest.raises(FilterError, match='cutoff|rate'):
+    with pytest.raises(FilterError, match=r'cutoff|rate'):
         zero_phase(np.zeros(50), rate, cutoff)
-    with pytest.raises(FilterError, match='cutoff|rate'):
+    with pytest.raises(FilterError, match=r'cutoff|rate'):
         CausalFilter(rate, cutoff, 1)
 
 

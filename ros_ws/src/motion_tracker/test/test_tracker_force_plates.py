@@ -87,9 +87,9 @@ def test_mass_is_checked_once_and_only_in_quiet_standing():
 
 
 def test_geometry_is_checked():
-    with pytest.raises(ForcePlateError, match='left.rotation'):
+    with pytest.raises(ForcePlateError, match=r'left\.rotation'):
         PlateGeometry('left', rotation=np.diag([1.0, 1.0, -1.0]))
-    with pytest.raises(ForcePlateError, match='left.origin'):
+    with pytest.raises(ForcePlateError, match=r'left\.origin'):
         PlateGeometry('left', origin=np.array([0.0, np.nan, 0.0]))
     with pytest.raises(ForcePlateError, match='threshold'):
         ground_reaction(np.zeros((1, 3)), np.zeros((1, 3)), PlateGeometry('p'), 0.0)

@@ -105,7 +105,7 @@ def test_damaged_files_are_refused_by_file_line_and_field(tmp_path, row, words):
 def test_missing_column_and_unknown_set_are_named(tmp_path):
     path = tmp_path / 'own_set.csv'
     path.write_text('marker,segment\nA,pelvis\n', encoding='utf-8')
-    with pytest.raises(MarkerSetError, match="own_set.csv: column 'x'"):
+    with pytest.raises(MarkerSetError, match=r"own_set\.csv: column 'x'"):
         load_marker_set(path)
     with pytest.raises(MarkerSetError, match='plug_in_gait_58'):
         load_marker_set('plug_in_gate')

@@ -360,14 +360,14 @@ class InverseKinematics:
             worst = self.model.names[int(np.nanargmax(residuals))]
             return (SolveStatus.TRACKER_BAD_INPUT,
                     f'marker residuals rms {rms:.3f} m, largest {maximum:.3f} m at {worst}')
-        if held.any():
-            names = [self.skeleton.coordinates[j] for j in np.flatnonzero(held)]
-            return (SolveStatus.TRACKER_MARKERS_MISSING,
-                    f'no marker sees {", ".join(names)}: held at the previous value')
         seen = {s for s, r in zip(self.model.segments, residuals, strict=True) if np.isfinite(r)}
         blind = sorted(set(self.model.segments) - seen)
-        if blind:
-            return SolveStatus.TRACKER_MARKERS_MISSING, f'no marker seen on {", ".join(blind)}'
+        words = [f'no marker seen on {", ".join(blind)}'] if blind else []
+        if held.any():
+            names = [self.skeleton.coordinates[j] for j in np.flatnonzero(held)]
+            words.append(f'{", ".join(names)} not seen: held at the previous value')
+        if words:
+            return SolveStatus.TRACKER_MARKERS_MISSING, '; '.join(words)
         return SolveStatus.OK, f'left out: {", ".join(rejected)}' if rejected else ''
 
     def _lost(self, target: Array, weight: Array, last: Array | None,

@@ -248,7 +248,8 @@ class LiftEventDetector:
                 first -= 1
             level = float(np.median(self._raw[first:before + 1]))
             last = base
-            while self._smooth[last] - level < self.settings.onset_rise:
+            while (last < len(self._smooth) - 1
+                   and self._smooth[last] - level < self.settings.onset_rise):
                 last += 1
             t, z = np.array(self._time[first:last + 1]), np.array(self._raw[first:last + 1])
             return _change_point(t, z)

@@ -197,8 +197,8 @@ class MotionTracker:
     def _ready(self, stamp: float) -> bool:
         """Whether every awaited stream has come up to the stamp or has been given up."""
         for stream in self._awaited():
-            if stream.last >= stamp - 1e-9:
-                if stream.name in self._absent and stream.rate > 0:
+            if stream.last >= stamp - 1e-9 and stream.rate > 0:
+                if stream.name in self._absent:
                     self._absent.discard(stream.name)
                     self._notices.append(Notice(f'{stream.name}: samples are back', True))
                 continue

@@ -1,0 +1,284 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""The whole tracker on a made-up lift: order of arrival, bad input, live against lift."""
+
+import numpy as np
+import pytest
+
+from human_model.report import SolveStatus
+from motion_tracker.core.configuration import settings_from, tracker_from
+from motion_tracker.core.errors import MotionTrackerError, TrackerError
+from motion_tracker.core.lift_events import LiftPhase
+from motion_tracker.core.tracked import (
+    FROM_BOX,
+    FROM_HANDS,
+    DetectedEvent,
+    MeasuredLift,
+    Notice,
+    TrackedFrame,
+    TrackerSettings,
+)
+from motion_tracker.core.tracker import MotionTracker
+
+START = 1.7e9
+MASS, SIZE = 10.0, (0.3, 0.3, 0.2)
+GRAVITY = 9.80665
+
+
+def step(time, begin, duration):
+    s = np.clip((time - begin) / duration, 0.0, 1.0)
+    return 10 * s**3 - 15 * s**4 + 6 * s**5
+
+
+@pytest.fixture(scope='module')
+def lift(skeleton, solver, crouch, person):
+    """Frames of a crouching person who rises with a box between the hands, as (kind, ...)."""
+    rng = np.random.default_rng(6)
+    stand = skeleton.vector({'arm_flex_r': 0.5, 'arm_flex_l': 0.5, 'elbow_flex_r': 0.5,
+                             'elbow_flex_l': 0.5}, skeleton.standing())
+    markers, box, wrench = [], [], []
+    for i in range(300):
+        t = i / 100.0
+        q = crouch + float(step(t, 1.0, 1.0)) * (stand - crouch)
+        points = skeleton.points(q)
+        centre = (points['hand_r'] + points['hand_l']) / 2
+        positions = solver.predict(q) + rng.normal(0.0, 5e-4, (54, 3))
+        markers.append(('markers', START + t, positions))
+        box.append(('box', START + t, centre + rng.normal(0.0, 3e-4, 3)))
+        weight = (person.mass + MASS) * GRAVITY / 2
+        for k in range(2):
+            for side, y in (('right', -0.15), ('left', 0.15)):
+                force = np.array([0.0, 0.0, weight]) + rng.normal(0.0, 1.0, 3)
+                wrench.append((side, START + t + k / 200.0, force,
+                               np.cross([0.1, y, 0.0], force)))
+    return markers, box, wrench
+
+
+def feed(tracker, messages, names):
+    outputs = []
+    for message in messages:
+        if message[0] == 'markers':
+            outputs += tracker.push_markers(message[1], names, message[2])
+        elif message[0] == 'box':
+            outputs += tracker.push_box(*message[1:])
+        else:
+            outputs += tracker.push_wrench(*message)
+    return outputs + tracker.flush()
+
+
+def in_order(*streams):
+    return sorted((m for stream in streams for m in stream), key=lambda m: m[1])
+
+
+def shuffled(seed, *streams):
+    """Another interleaving: every stream in its own order, up to half a second ahead."""
+    rng = np.random.default_rng(seed)
+    ahead = rng.uniform(0.0, 0.5, len(streams))
+    return [message for _, message in sorted(
+        ((m[1] - lead + rng.uniform(0.0, 1e-9), m)
+         for stream, lead in zip(streams, ahead, strict=True) for m in stream),
+        key=lambda pair: pair[0])]
+
+
+@pytest.fixture
+def tracker(person, marker_set):
+    return MotionTracker(person, marker_set, MASS, SIZE)
+
+
+@pytest.fixture(scope='module')
+def sides(lift):
+    """Right and left plate as streams of their own."""
+    return tuple([m for m in lift[2] if m[0] == side] for side in ('right', 'left'))
+
+
+@pytest.fixture(scope='module')
+def outputs(lift, person, marker_set, solver):
+    return feed(MotionTracker(person, marker_set, MASS, SIZE), in_order(*lift),
+                solver.model.names)
+
+
+def of(kind, outputs):
+    return [output for output in outputs if isinstance(output, kind)]
+
+
+def test_one_lift_comes_out_with_its_events(outputs):
+    events = of(DetectedEvent, outputs)
+    assert [e.event.phase for e in events] == [LiftPhase.START, LiftPhase.END]
+    assert {e.lift_id for e in events} == {'lift_001'}
+    assert {e.detected_from for e in events} == {FROM_BOX}
+    (measured,) = of(MeasuredLift, outputs)
+    assert measured.lift.report.ok, measured.lift.report.message
+    assert measured.lift.start == events[0].event.time
+    window = measured.lift.window
+    assert len(window) == len(measured.lift.motion) == len(measured.status)
+    assert window.time[0] - measured.lift.start < 0.01
+    assert measured.lift.end - window.time[-1] < 0.01
+
+
+def test_live_samples_are_stamped_with_their_own_time(outputs, lift, tracker):
+    frames = of(TrackedFrame, outputs)
+    assert len(frames) == len(lift[0])
+    delay = frames[-1].filter_delay
+    assert delay == pytest.approx(0.0693, abs=1e-4)
+    stamps = [frame.motion.time[0] for frame in frames]
+    assert stamps == pytest.approx([m[1] - delay for m in lift[0]], abs=1e-6)
+
+
+def test_live_and_lift_agree_where_both_see_the_same_instant(outputs):
+    """Causal and zero-phase filters differ in the transition band only."""
+    (measured,) = of(MeasuredLift, outputs)
+    frames = of(TrackedFrame, outputs)
+    stamps = np.array([frame.motion.time[0] for frame in frames])
+    live = np.array([frame.motion.position[0] for frame in frames])
+    motion = measured.lift.motion
+    for name in ('knee_angle_r', 'hip_flexion_l', 'pelvis_tilt', 'arm_flex_r'):
+        column = motion.coordinates.index(name)
+        at_same = np.interp(motion.time, stamps, live[:, column])
+        assert np.degrees(np.abs(at_same - motion.position[:, column])).max() < 1.0, name
+
+
+@pytest.mark.parametrize('seed', [0, 1, 2])
+def test_results_do_not_depend_on_the_order_of_arrival(outputs, tracker, lift, sides, solver,
+                                                       seed):
+    """Same input, same bits, whichever stream is ahead."""
+    other = feed(tracker, shuffled(seed, lift[0], lift[1], *sides), solver.model.names)
+    for kind in (TrackedFrame, MeasuredLift):
+        for a, b in zip(of(kind, outputs), of(kind, other), strict=True):
+            first = a.motion if kind is TrackedFrame else a.lift.motion
+            second = b.motion if kind is TrackedFrame else b.lift.motion
+            for name in ('time', 'position', 'velocity', 'acceleration', 'points', 'frames',
+                         'ground_force', 'cop', 'free_moment', 'hand_force', 'box_position'):
+                assert np.array_equal(getattr(first, name), getattr(second, name),
+                                      equal_nan=True), name
+    assert of(DetectedEvent, outputs) == of(DetectedEvent, other)
+
+
+def test_forces_add_up(outputs, person):
+    (measured,) = of(MeasuredLift, outputs)
+    motion = measured.lift.motion
+    total = motion.ground_force.sum(axis=1)
+    assert total[:, 2] == pytest.approx((person.mass + MASS) * GRAVITY, rel=0.01)
+    acceleration = np.gradient(np.gradient(motion.box_position[:, 2], 0.01), 0.01)
+    carried = motion.hand_force.sum(axis=1)[:, 2]
+    # Well after lift-off, where the box is carried by the hands alone.
+    high = slice(40, -5)
+    assert carried[high] == pytest.approx(-MASS * (GRAVITY + acceleration[high]), abs=3.0)
+    assert motion.cop[:, 0, 1] == pytest.approx(-0.15, abs=1e-3)
+
+
+def test_missing_plate_is_a_status_and_not_the_end(tracker, lift, sides, solver):
+    outputs = feed(tracker, in_order(lift[0], lift[1], sides[0]), solver.model.names)
+    frames = of(TrackedFrame, outputs)
+    assert len(frames) == len(lift[0])
+    assert {frame.status for frame in frames} == {SolveStatus.TRACKER_NO_GROUND_FORCE}
+    assert 'left plate' in frames[50].message
+    assert not frames[50].motion.ground_force.any()
+    assert any('left plate: no samples at all' in n.text for n in of(Notice, outputs))
+    (measured,) = of(MeasuredLift, outputs)
+    assert measured.lift.report.status is SolveStatus.TRACKER_NO_GROUND_FORCE
+    assert 'no complete ground reaction' in measured.lift.report.message
+
+
+def test_box_never_seen_means_events_from_the_hands(tracker, lift, sides, solver):
+    outputs = feed(tracker, in_order(lift[0], *sides), solver.model.names)
+    events = of(DetectedEvent, outputs)
+    assert {e.detected_from for e in events} == {FROM_HANDS}
+    (measured,) = of(MeasuredLift, outputs)
+    assert np.isnan(measured.lift.motion.box_position).all()
+    assert any(n.text.startswith('box: no samples') for n in of(Notice, outputs))
+
+
+def test_a_short_gap_is_bridged_and_a_long_one_is_not(tracker, lift, sides, solver):
+    markers = lift[0][:140] + lift[0][145:150] + lift[0][175:]
+    outputs = feed(tracker, in_order(markers, lift[1], *sides), solver.model.names)
+    assert tracker.counts['markers: lost frames'] == 30
+    (measured,) = of(MeasuredLift, outputs)
+    assert measured.lift.report.status is SolveStatus.TRACKER_MARKERS_MISSING
+    assert '5 bad frames bridged' in measured.lift.report.message
+    bad = measured.lift.motion.time[measured.status != 0] - START
+    assert bad.min() == pytest.approx(1.50, abs=0.006)
+    assert bad.max() == pytest.approx(1.74, abs=0.006)
+
+
+def test_bad_stamps_are_counted_and_change_nothing(outputs, tracker, lift, solver):
+    messages = []
+    for i, message in enumerate(in_order(*lift)):
+        messages.append(message)
+        if i % 50 == 49:
+            messages.append(message)
+            messages.append((message[0], message[1] - 0.2, *message[2:]))
+    other = feed(tracker, messages, solver.model.names)
+    assert sum(tracker.counts.values()) == 2 * (len(in_order(*lift)) // 50)
+    assert any(kind.endswith('duplicate stamps') for kind in tracker.counts)
+    assert any(kind.endswith('unsorted stamps') for kind in tracker.counts)
+    last = [of(TrackedFrame, some)[-1].motion.position for some in (outputs, other)]
+    assert np.array_equal(*last)
+
+
+def test_nan_markers_and_samples_are_done_without(tracker, lift, solver):
+    names = solver.model.names
+    markers = []
+    for kind, stamp, positions in lift[0]:
+        holed = positions.copy()
+        holed[names.index('LKNE')] = np.nan
+        markers.append((kind, stamp, holed))
+    wrench = [(m[0], m[1], m[2] * (np.nan if i == 100 else 1.0), m[3])
+              for i, m in enumerate(lift[2])]
+    outputs = feed(tracker, in_order(markers, lift[1], wrench), names)
+    (measured,) = of(MeasuredLift, outputs)
+    assert measured.lift.report.ok
+    assert sum(v for k, v in tracker.counts.items() if k.endswith('not finite')) == 1
+
+
+def test_millimetres_are_refused_by_name(tracker, lift, solver):
+    with pytest.raises(TrackerError, match='millimetres'):
+        tracker.push_markers(START, solver.model.names, 1000.0 * lift[0][0][2])
+    with pytest.raises(TrackerError, match='54 names, 3 positions'):
+        tracker.push_markers(START, solver.model.names, np.zeros((3, 3)))
+    with pytest.raises(TrackerError, match="'rigth'"):
+        tracker.push_wrench('rigth', START, np.zeros(3), np.zeros(3))
+
+
+def test_unknown_and_doubled_markers_are_told(tracker, lift, solver):
+    names = (*solver.model.names, 'HAT', 'LKNE')
+    messages = [('markers', m[1], np.vstack([m[2], np.ones((2, 3))])) for m in lift[0][:30]]
+    outputs = feed(tracker, messages, names)
+    told = [n.text for n in of(Notice, outputs) if 'HAT' in n.text]
+    assert len(told) == 1
+    assert tracker.counts['markers: name twice in a frame'] == 30
+
+
+def test_weight_off_by_more_than_five_percent_is_a_warning(marker_set, lift, solver, person):
+    """The plates carry person and box: without a task they weigh too much."""
+    tracker = MotionTracker(person, marker_set)
+    outputs = feed(tracker, in_order(lift[0], lift[2]), solver.model.names)
+    (warning,) = [n for n in of(Notice, outputs) if 'subject.mass' in n.text]
+    assert not warning.information
+    assert '+13.' in warning.text or '+14.' in warning.text
+
+
+def test_several_recordings_count_on(person, marker_set, lift, solver):
+    values = {'marker_set': '', 'motion_cutoff': 6.0, 'plate_cutoff': 25.0,
+              'force_threshold': 20.0, 'plate_surface_height': 0.0, 'wait': 2.0,
+              'longest_gap': 0.1, 'margin': 0.5, 'mass_tolerance': 0.05, 'minimum_rise': 0.05,
+              'minimum_body_rise': 0.03, 'rest_speed': 0.03}
+    second = tracker_from(values, person, marker_set.name, MASS, SIZE, first_lift=5)
+    outputs = feed(second, in_order(*lift), solver.model.names)
+    assert {e.lift_id for e in of(DetectedEvent, outputs)} == {'lift_005'}
+    assert second.lifts == 5
+    with pytest.raises(MotionTrackerError, match='margin'):
+        settings_from(values | {'margin': -1.0})
+
+
+def test_recording_without_a_rise_has_no_lift(tracker, lift, solver):
+    still = [('markers', m[1], lift[0][0][2]) for m in lift[0]]
+    box = [('box', m[1], lift[1][0][2]) for m in lift[1]]
+    outputs = feed(tracker, in_order(still, box, lift[2]), solver.model.names)
+    assert not of(MeasuredLift, outputs)
+    assert not of(DetectedEvent, outputs)
+    assert len(of(TrackedFrame, outputs)) == len(still)
+
+
+def test_settings_must_be_positive():
+    with pytest.raises(TrackerError, match=r'tracker\.wait'):
+        TrackerSettings(wait=0.0)
