@@ -1,19 +1,39 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Draw the figures of the documents from the project's own code and data."""
+"""Draw the figures of the documents from the project's own code and recordings.
+
+The recordings in bags/ are run offline into out/figures. With `--squats` and the folder of the
+public squats and their OpenSim reference, these are imported, run and compared too.
+"""
 
 from __future__ import annotations
 
+import argparse
 import math
+import shutil
 from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
+from lifting_bringup.bags.importer import ImportOptions, import_recording
+from lifting_bringup.bags.reader import BagReader
+from lifting_bringup.offline import run_offline
 from muscle_analyzer.core.disc_frame import DiscOption, disc_load, disc_parameters, disc_rotation
 
+ROOT = Path(__file__).resolve().parents[1]
 FIGURES = Path(__file__).parent / 'figures'
+RESULTS = ROOT / 'out' / 'figures'
+LIFTS = ('symmetric_7kg', 'symmetric_12kg', 'symmetric_max', 'asymmetric_7kg')
+ANGLE_LIMIT = 2.0
+"""Agreed error of a joint angle in the sagittal plane [deg]."""
+JOINTS = {
+    'pelvis_tilt': 'pelvis tilt', 'lumbar_extension': 'lower spine',
+    'thorax_extension': 'upper spine', 'arm_flex': 'shoulder', 'elbow_flex': 'elbow',
+    'hip_flexion': 'hip', 'knee_angle': 'knee', 'ankle_angle': 'ankle',
+}  # fmt: skip
+LIVE = 1
 RESULTANT = 2500.0
 """Force whose components are shown [N]."""
 
@@ -68,11 +88,117 @@ def disc_frame() -> Figure:
     return figure
 
 
+def results_of(bag: Path) -> Path:
+    """Run a recording offline and return its results file."""
+    return run_offline(bag, RESULTS / bag.name)
+
+
+def messages(results: Path, topic: str) -> list:
+    """Return all messages of a topic."""
+    with BagReader(results) as bag:
+        names = [name for name in bag.topics if name.endswith(f'/{topic}')]
+        return [message for _, _, message in bag.messages(names)]
+
+
+def stamp(message: object) -> float:
+    """Return the stamp of a message [s]."""
+    return message.header.stamp.sec + 1e-9 * message.header.stamp.nanosec
+
+
+def angle_errors(name: str) -> dict[str, float]:
+    """Return the rms error of each joint of a measured lift [deg], the worse side."""
+    (lift,) = messages(results_of(ROOT / 'bags' / name), 'measured_lift')
+    with np.load(ROOT / 'bags' / name / 'truth.npz') as truth:
+        with BagReader(ROOT / 'bags' / name) as bag:
+            start = bag.start_ns * 1e-9
+        motion = lift.motion
+        time = stamp(motion) - start + motion.time_from_start
+        found = motion.position.reshape(len(time), -1)
+        error = {
+            str(coordinate): np.degrees(np.sqrt(np.mean(np.square(
+                found[:, motion.coordinate_names.index(coordinate)]
+                - np.interp(time, truth['time'], truth['position'][:, i])))))
+            for i, coordinate in enumerate(truth['coordinates'])
+        }
+    return {joint: max(value for key, value in error.items() if key.startswith(joint))
+            for joint in JOINTS}
+
+
+def tracker_error() -> Figure:
+    """Angle errors of the tracker against the stored truth."""
+    figure = Figure(figsize=(7.2, 2.9))
+    axes = figure.subplots()
+    for k, name in enumerate(LIFTS):
+        errors = angle_errors(name)
+        print(name, {joint: round(float(value), 2) for joint, value in errors.items()})
+        axes.bar(np.arange(len(JOINTS)) + 0.2 * (k - 1.5), list(errors.values()), 0.18,
+                 label=name.replace('_', ' '), color=(BLUE, '#5b93d1', '#9dbfe4', ORANGE)[k])
+    axes.axhline(ANGLE_LIMIT, color=GREY, linestyle='--', linewidth=0.9)
+    axes.text(len(JOINTS) - 0.5, ANGLE_LIMIT + 0.03, 'agreed limit', color=GREY, ha='right',
+              fontsize=8)
+    axes.set_xticks(np.arange(len(JOINTS)), list(JOINTS.values()), fontsize=8.5)
+    axes.set_ylabel('rms error [deg]')
+    axes.set_ylim(0.0, 1.25 * ANGLE_LIMIT)
+    axes.grid(axis='x', visible=False)
+    axes.legend(frameon=False, ncols=4, fontsize=8, loc='upper left')
+    return figure
+
+
+def reference_loads(folder: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return time [s], compression and shear [N] of OpenSim in the default disc frame."""
+    lines = (folder / 'joint_reaction_loads.sto').read_text(encoding='utf-8').splitlines()
+    first = lines.index('endheader') + 1
+    names = lines[first].split('\t')
+    rows = np.array([[float(word) for word in line.split()] for line in lines[first + 1:]])
+    columns = [names.index(f'L5_S1_IVDjnt_on_lumbar5_in_lumbar5_f{axis}') for axis in 'xyz']
+    frame = disc_rotation(DiscOption.BRUNO2015, np.eye(3), np.eye(3), 0.0)
+    loads = [disc_load(np.concatenate([np.zeros(3), force]), frame) for force in rows[:, columns]]
+    return (rows[:, 0], np.array([load.compression for load in loads]),
+            np.array([load.anterior_shear for load in loads]))
+
+
+def squats(folder: Path) -> Figure:
+    """Live L5-S1 load of the real squats from markers, against OpenSim's."""
+    bag = RESULTS / 'squats_bag'
+    shutil.rmtree(bag, ignore_errors=True)
+    import_recording(ImportOptions(
+        markers=folder / 'squats1.trc', forces=folder / 'squats1_grf.mot',
+        static=folder / 'static1.trc', output=bag,
+        subject=ROOT / 'bags' / 'subjects' / 'squats_bodyweight.yaml'))
+    results = results_of(bag)
+    start = stamp(messages(results, 'subject')[0])
+    live = [load for load in messages(results, 'spine_load') if load.source == LIVE]
+    time = np.array([stamp(load) - start for load in live])
+    figure = Figure(figsize=(7.2, 4.2))
+    rows = figure.subplots(2, 1, sharex=True)
+    reference = reference_loads(folder / 'opensim46_reference')
+    for axes, name, known in zip(rows, ('compression', 'anterior_shear'), reference[1:],
+                                 strict=True):
+        values = np.array([getattr(load, name)[0] for load in live])
+        axes.plot(time, values, color=BLUE, linewidth=1.2, label='from the markers, live')
+        axes.plot(reference[0], known, 'o', color=ORANGE, markersize=4,
+                  label='OpenSim 4.6, its own inverse kinematics')
+        axes.set_ylabel(f'{name.replace("_", " ")} [N]')
+        at = np.interp(reference[0], time, values)
+        print(f'{name}: peak {at.max():.0f} N against {known.max():.0f} N at its instants')
+    figure.legend(*rows[0].get_legend_handles_labels(), frameon=False, fontsize=8, ncols=2,
+                  loc='upper center')
+    rows[1].set_xlabel('time [s]')
+    rows[0].set_xlim(0.0, 6.0)
+    return figure
+
+
 def main() -> None:
     """Draw all figures."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('--squats', type=Path, help='folder of the public squats')
+    options = parser.parse_args()
     mpl.use('Agg')
     with mpl.rc_context(STYLE):
         save(disc_frame(), 'disc_frame')
+        save(tracker_error(), 'tracker_error')
+        if options.squats:
+            save(squats(options.squats), 'squats')
 
 
 if __name__ == '__main__':
