@@ -206,10 +206,11 @@ def _alarm(message: AlarmEvent) -> tuple[str, Kind]:
         AlarmEvent.LATCHED_UNACKNOWLEDGED,
         AlarmEvent.LATCHED_ACKNOWLEDGED,
     )
+    unit = '' if message.unit == '1' else f' {message.unit}'
     text = (
         f'{"ALARM" if active else "alarm returned"} {message.alarm_id}: '
-        f'{message.value:.4g} {message.unit}, limit {message.limit:.4g} {message.unit}, '
-        f'margin {message.margin:.4g} {message.unit}'
+        f'{message.value:.4g}{unit}, limit {message.limit:.4g}{unit}, '
+        f'margin {message.margin:.4g}{unit}'
     )
     return text, Kind.ALARM if active else Kind.GOOD
 
