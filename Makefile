@@ -22,7 +22,7 @@ DEMO_ARGS ?=
 help: ## show this help
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 14
 
-setup: ## make .venv: locked packages, ROS wheels, interfaces, the lift command
+setup: ## make .venv: locked packages, ROS wheels, interfaces, compiled functions, lift
 	@$(SETUP)
 
 setup-dev: ## setup, and the tools of the tests

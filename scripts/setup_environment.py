@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Make the environment in .venv: locked packages, ROS wheels, interfaces, the lift command.
+"""Make the environment in .venv: locked packages, ROS wheels, interfaces, compiled functions.
 
 Each step leaves a stamp with a digest of its inputs and is repeated only when they change.
 """
@@ -16,6 +16,7 @@ import sys
 import time
 from pathlib import Path
 
+import compiled_functions
 import interfaces
 from clean_environment import clean_environment
 from stamps import Stamp, digest
@@ -141,6 +142,18 @@ def install_workspace() -> None:
     command.chmod(0o755)
 
 
+def drop_compiled_functions() -> None:
+    """Remove what numba compiled from other sources than the present ones."""
+    if compiled_functions.remove_numba_caches(SOURCES):
+        say('sources of compiled functions have changed: the old compilations are removed')
+
+
+def compile_functions() -> None:
+    """Have every pipeline compile its functions, so that no node does it when it starts."""
+    say('compiling the functions of the pipelines (one to two minutes, once)')
+    run(VENV / 'bin' / 'python', '-m', 'lifting_bringup.warm_up')
+
+
 def set_up(dev: bool) -> None:
     """Bring every step up to date.
 
@@ -169,13 +182,19 @@ def set_up(dev: bool) -> None:
     interface_files += [INTERFACES / 'CMakeLists.txt', INTERFACES / 'package.xml',
                         SCRIPTS / 'interfaces.py', REQUIREMENTS / 'build.txt']
     names = [path.name for path in python_packages()]
+    numba = digest(compiled_functions.numba_sources(SOURCES), runtime)
+    programme = digest(compiled_functions.programme_sources(SOURCES), numba)
     steps = [
         ('runtime', runtime, install_runtime),
         ('interfaces', digest(interface_files, runtime), build_interfaces),
         ('workspace', digest([Path(__file__)], runtime, *names), install_workspace),
+        ('numba', numba, drop_compiled_functions),
     ]
     if dev:
         steps.append(('dev', digest([DEV_LOCK], runtime), install_dev))
+    else:
+        # Tests compile what they need; code that is being changed must not stop the set-up.
+        steps.append(('compiled functions', programme, compile_functions))
     for name, value, action in steps:
         stamp = Stamp(STAMPS / name, value)
         if not stamp.is_current():
