@@ -136,7 +136,7 @@ def tracker_error() -> Figure:
     axes.axhline(ANGLE_LIMIT, color=GREY, linestyle='--', linewidth=0.9)
     axes.text(len(JOINTS) - 0.5, ANGLE_LIMIT + 0.03, 'agreed limit', color=GREY, ha='right',
               fontsize=8)
-    axes.set_xticks(np.arange(len(JOINTS)), list(JOINTS.values()), fontsize=8.5)
+    axes.set_xticks(np.arange(len(JOINTS)), list(JOINTS.values()), fontsize=8)
     axes.set_ylabel('rms error [deg]')
     axes.set_ylim(0.0, 1.25 * ANGLE_LIMIT)
     axes.grid(axis='x', visible=False)

@@ -131,6 +131,15 @@ def test_everything_from_the_bag_is_read_by_some_node() -> None:
     assert {name for name, row in documented().items() if row[2] == 'bag'} <= read
 
 
+@pytest.mark.parametrize('name', ['README.md', 'docs/architecture.md'])
+def test_depths_of_the_queues_are_those_of_the_nodes(name: str) -> None:
+    from lifting_node import qos
+
+    text = (ROOT / name).read_text(encoding='utf-8').replace(' 000', '000')
+    for depth in (qos.PLATE_DEPTH, qos.FRAME_DEPTH, qos.LIFT_DEPTH):
+        assert re.search(rf'\b{depth}\b', text), f'{name} does not name {depth}'
+
+
 def make_targets() -> set[str]:
     text = (ROOT / 'Makefile').read_text(encoding='utf-8')
     return set(re.findall(r'^([a-z-]+):', text, re.MULTILINE))
