@@ -64,11 +64,12 @@ def topic_names(node: ast.expr, assigned: dict[str, ast.expr], values: object) -
 
 
 def full_types(tree: ast.Module) -> dict[str, str]:
-    """Return message types by the name they are imported under."""
+    """Return message, service and action types by the name they are imported under."""
     return {
-        alias.asname or alias.name: f'{node.module.removesuffix(".msg")}/{alias.name}'
+        alias.asname or alias.name: f'{node.module.rpartition(".")[0]}/{alias.name}'
         for node in ast.walk(tree)
-        if isinstance(node, ast.ImportFrom) and node.module and node.module.endswith('.msg')
+        if isinstance(node, ast.ImportFrom) and node.module
+        and node.module.endswith(('.msg', '.srv', '.action'))
         for alias in node.names
     }
 
@@ -129,6 +130,33 @@ def test_what_a_node_reads_is_published_with_that_type(package: str) -> None:
 def test_everything_from_the_bag_is_read_by_some_node() -> None:
     read = {name for package in NODES for name in endpoints(package, ('subscribe',))}
     assert {name for name, row in documented().items() if row[2] == 'bag'} <= read
+
+
+def served(package: str) -> dict[str, str]:
+    """Return type by name of the services and actions a node's source opens."""
+    source = (SOURCES / package / package / f'{package}_node.py').read_text(encoding='utf-8')
+    tree = ast.parse(source)
+    types = full_types(tree)
+    found = {}
+    for node in ast.walk(tree):
+        if not isinstance(node, ast.Call):
+            continue
+        name = getattr(node.func, 'attr', getattr(node.func, 'id', ''))
+        first = {'create_service': 0, 'ActionServer': 1}.get(name)
+        if first is None:
+            continue
+        kind, topic = node.args[first:first + 2]
+        assert isinstance(kind, ast.Name) and isinstance(topic, ast.Constant), ast.dump(node)
+        found[str(topic.value).replace('~', package)] = types[kind.id]
+    return found
+
+
+def test_services_table_is_what_the_nodes_serve() -> None:
+    rows = re.findall(r'^\| `([\w/]+)`(?: \(action\))? \| `(\w+/\w+)` \| [^|]*\|$', README,
+                      re.MULTILINE)
+    assert dict(rows) == {
+        name: kind for package in NODES for name, kind in served(package).items()
+    }
 
 
 @pytest.mark.parametrize('name', ['README.md', 'docs/architecture.md'])
