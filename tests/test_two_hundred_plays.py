@@ -1,0 +1,127 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""A recording played again and again at ten times its speed: no message lost, no node dead."""
+
+import time
+
+import pytest
+import rclpy
+from lifting_interfaces.msg import AlarmEvent, MeasuredLift, RiskAssessment, SpineLoad
+from rclpy.experimental import EventsExecutor
+from rclpy.node import Node
+from std_srvs.srv import Trigger
+
+from lifting_bringup.bags.reader import BagReader
+from lifting_bringup.graph import Graph
+from lifting_bringup.node_process import start_module
+from lifting_bringup.session import summarise
+from lifting_node import qos
+
+STATION = 'soak'
+BAG = 'symmetric_7kg'
+RATE = 10.0
+#: Time [s] a play may take: its messages are delivered as fast as the slowest node takes them.
+PLAY_TIMEOUT = 60.0
+
+
+class Listener:
+    """Counts what the graph says of live frames and lifts."""
+
+    def __init__(self, node):
+        self.live = self.lifts = self.measured = self.alarms = self.unsolved = 0
+        self.last = time.monotonic()
+        node.create_subscription(SpineLoad, 'spine_load', self.spine, qos.FRAMES)
+        node.create_subscription(MeasuredLift, 'measured_lift', self.lift, qos.RESULTS)
+        node.create_subscription(RiskAssessment, 'risk_assessment', self.assessed, qos.RESULTS)
+        node.create_subscription(AlarmEvent, 'alarms', self.alarm, qos.RESULTS)
+
+    def spine(self, message):
+        if message.source == SpineLoad.LIVE:
+            self.live += len(message.status)
+            self.unsolved += sum(1 for status in message.status if status != 0)
+            self.last = time.monotonic()
+
+    def lift(self, _):
+        self.measured += 1
+
+    def assessed(self, _):
+        self.lifts += 1
+        self.last = time.monotonic()
+
+    def alarm(self, _):
+        self.alarms += 1
+
+
+def soak(bag, plays, folder, say=print):
+    """Play a recording so many times through one graph; return what was heard and sent."""
+    summary = summarise(bag)
+    with BagReader(bag) as reader:
+        frames = reader.topics['/markers'].count
+    rclpy.init()
+    node = Node('listener', namespace=STATION)
+    executor = EventsExecutor()
+    executor.add_node(node)
+    heard = Listener(node)
+    graph = Graph(node, executor, STATION, folder / 'logs')
+    player = None
+    began = time.monotonic()
+    try:
+        graph.start()
+        graph.bring_up()
+        flush = node.create_client(Trigger, 'motion_tracker/flush')
+        for play in range(1, plays + 1):
+            player = start_module(
+                'player', 'lifting_bringup.cli', folder / 'logs',
+                arguments=(
+                    'play', str(bag), '--rate', str(RATE), '--station', STATION,
+                    '--wait-for', *summary.inputs,
+                ),
+            )  # fmt: skip
+            deadline = time.monotonic() + PLAY_TIMEOUT
+            while player.process.poll() is None:
+                graph.check()
+                assert time.monotonic() < deadline, f'play {play} has not ended'
+                executor.spin_once(timeout_sec=0.05)
+            assert player.process.returncode == 0, player.log.read_text()
+            answer = flush.call_async(Trigger.Request())
+            deadline = time.monotonic() + PLAY_TIMEOUT
+            while not (
+                answer.done() and heard.live >= play * frames and heard.lifts >= play
+            ) and time.monotonic() < deadline:
+                graph.check()
+                executor.spin_once(timeout_sec=0.05)
+            if play % 10 == 0:
+                say(
+                    f'{play} plays, {time.monotonic() - began:.0f} s: {heard.live} live samples '
+                    f'of {play * frames}, {heard.lifts} lifts assessed'
+                )
+            assert (heard.live, heard.lifts) == (play * frames, play)
+        codes = graph.stop()
+    finally:
+        if player is not None:
+            player.stop()
+        graph.stop()
+        executor.shutdown()
+        node.destroy_node()
+        rclpy.try_shutdown()
+    return heard, codes, frames
+
+
+def check(bag, plays, folder):
+    heard, codes, frames = soak(bag, plays, folder)
+    assert heard.live == plays * frames
+    assert heard.lifts == heard.measured == plays
+    # Of a recording's frames only those before the first plate sample's time do not solve.
+    assert heard.unsolved <= 10 * plays
+    assert set(codes.values()) <= {0, -15}
+
+
+@pytest.mark.timeout(280)
+def test_three_plays(bags, tmp_path):
+    check(bags / BAG, 3, tmp_path)
+
+
+@pytest.mark.long
+@pytest.mark.timeout(2400)
+def test_two_hundred_plays(bags, tmp_path):
+    check(bags / BAG, 200, tmp_path)
