@@ -52,6 +52,7 @@ class MotionTrackerNode(PipelineNode):
 
     PACKAGE = 'motion_tracker'
     INPUT_ERRORS = (MotionTrackerError, HumanModelError)
+    LATER = ('scipy.signal', 'scipy.interpolate')
 
     def build(self) -> None:
         """Load the compiled functions; create publishers, subscriptions and the flush service."""
@@ -215,9 +216,10 @@ class MotionTrackerNode(PipelineNode):
         elif isinstance(output, TrackedLift) and self._subject is not None:
             self._measured.publish(conversions.measured_lift_to_msg(output, self._subject[0]))
             self.get_logger().info(f'{output.lift.lift_id}: {output.lift.report.message}')
+        elif isinstance(output, Notice) and output.information:
+            self.get_logger().info(output.text)
         elif isinstance(output, Notice):
-            logger = self.get_logger()
-            (logger.info if output.information else logger.warning)(output.text)
+            self.get_logger().warning(output.text)
 
 
 def main(args: list[str] | None = None) -> None:

@@ -24,7 +24,7 @@ def tracked(squats):
     columns = [squats.names.index(name) for name in model.names]
     q, solutions = None, []
     for frame in squats.markers:
-        solutions.append(solver.solve(frame[:][columns], q))
+        solutions.append(solver.solve(frame[columns], q))
         q = solutions[-1].q
     return skeleton, solutions
 
