@@ -62,7 +62,9 @@ def soak(bag, plays, folder, say=print):
     executor = EventsExecutor()
     executor.add_node(node)
     heard = Listener(node)
-    graph = Graph(node, executor, STATION, folder / 'logs')
+    # As `lift run` does: a stream that the recording has will come, however fast it is played.
+    parameters = {'motion_tracker': {'wait': summary.stream_wait}}
+    graph = Graph(node, executor, STATION, folder / 'logs', parameters)
     player = None
     began = time.monotonic()
     try:

@@ -26,7 +26,7 @@ from lifting_bringup.graph_errors import SessionError
 from lifting_bringup.live_state import FOLLOWED, LiveState
 from lifting_bringup.live_view import LiveView
 from lifting_bringup.results_writer import ResultsWriter
-from lifting_bringup.session import BagSummary, gauge_limits, summarise
+from lifting_bringup.session import NO_LIFT, BagSummary, gauge_limits, summarise
 from lifting_node.conversions import (
     lift_from_msg,
     motion_from_msg,
@@ -282,6 +282,8 @@ def run_offline(bag_path: Path, output: Path, station: str = 'station_1') -> Pat
             if names[name] in ('subject', 'task'):
                 writer.write_decoded(names[name], message, bag.types)
         graph.flush()
+        if not state.lifts_ended:
+            view.warn(NO_LIFT)
         if bag.loss is not None:
             view.warn(str(bag.loss))
     return results

@@ -55,6 +55,9 @@ _QOS = {
     'spine_load': qos.FRAMES,
 }
 
+#: Said when a recording ends without a lift.
+NO_LIFT = 'no lift found: nothing rose as motion_tracker asks for'
+
 #: Time [s] without any message after which the graph counts as quiet.
 QUIET = 1.0
 
@@ -284,7 +287,7 @@ class _Session:
                         f'{self._options.settle_timeout:g} s'
                     )
             if not self.state.lifts_ended:
-                self._view.warn('no lift found: nothing rose as motion_tracker asks for')
+                self._view.warn(NO_LIFT)
 
     def _check(self, processes: list[NodeProcess]) -> None:
         self._graph.check()

@@ -10,6 +10,7 @@ from collections.abc import Callable
 import rclpy
 from rclpy.executors import ExternalShutdownException
 from rclpy.experimental import EventsExecutor
+from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 
 from lifting_node.parameters import ParameterError
@@ -48,6 +49,10 @@ def run_node(factory: Callable[[], Node], args: list[str] | None = None) -> None
             executor.spin_once(timeout_sec=0.2)
     except (KeyboardInterrupt, ExternalShutdownException):
         return
+    except rclpy_implementation.RCLError:
+        # A signal ends the context at once, also under a callback that is about to publish.
+        if rclpy.ok():
+            raise
     finally:
         executor.shutdown()
         node.destroy_node()

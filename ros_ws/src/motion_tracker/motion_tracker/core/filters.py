@@ -13,8 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import make_interp_spline
-from scipy.signal import butter, cont2discrete, sosfiltfilt
+from scipy.linalg import expm
 
 from motion_tracker.core.errors import FilterError
 
@@ -121,6 +120,9 @@ def zero_phase(samples: npt.ArrayLike, rate: float, cutoff: float) -> Array:
     if not np.all(np.isfinite(array)):
         where = int(np.argwhere(~np.isfinite(array))[0][0])
         raise FilterError(f'samples: not finite at index {where}; fill the gaps first')
+    # Loads for longer than all else here; needed only at the end of a lift.
+    from scipy.signal import butter, sosfiltfilt
+
     # Pre-warped, so that the correction holds for the digital filter, not only for its prototype.
     warped = np.tan(np.pi * cutoff / rate) / (np.sqrt(2.0) - 1.0) ** 0.25
     single = float(np.arctan(warped) * rate / np.pi)
@@ -144,12 +146,48 @@ def derivatives(samples: npt.ArrayLike, rate: float) -> tuple[Array, Array]:
     ndarray, ndarray
         Per second and per second squared, same shape.
     """
+    from scipy.interpolate import make_interp_spline
+
     array = np.asarray(samples, dtype=np.float64)
     if array.shape[0] < 6:
         raise FilterError(f'samples: six or more are needed for derivatives, got {array.shape[0]}')
     time = np.arange(array.shape[0]) / rate
     spline = make_interp_spline(time, array, k=5)
     return np.asarray(spline.derivative(1)(time)), np.asarray(spline.derivative(2)(time))
+
+
+def settling_time(cutoff: float) -> float:
+    """Time [s] until a causal fourth-order Butterworth filter has forgotten its start.
+
+    Its slowest pair of poles lies at ``2 pi cutoff (-sin(pi/8) +- i cos(pi/8))``: what it brings
+    in has fallen to a thousandth after ``ln(1000)`` of its time constants, 0.48 s at 6 Hz.
+    """
+    return float(np.log(1000.0) / (2.0 * np.pi * cutoff * np.sin(np.pi / 8.0)))
+
+
+def _butterworth_polynomial(order: int) -> Array:
+    """Denominator of the low-pass of cutoff 1 rad/s, highest power first, shape (order + 1,)."""
+    angle = np.pi * (2.0 * np.arange(order) + order + 1.0) / (2.0 * order)
+    return np.poly(np.exp(1j * angle)).real
+
+
+def _first_order_hold(a: Array, b: Array, step: float) -> tuple[Array, Array, Array]:
+    """Make ``x' = a x + b u`` discrete for an input that is linear between the samples.
+
+    Returns
+    -------
+    ndarray, ndarray, ndarray
+        Matrices F, G, H of ``z[k + 1] = F z[k] + G u[k]``, ``x[k] = z[k] + H u[k]`` (Franklin,
+        Powell & Workman 1998, Digital Control of Dynamic Systems, section 6.3.2).
+    """
+    n, m = b.shape
+    block = np.zeros((n + 2 * m, n + 2 * m))
+    block[:n, :n] = a * step
+    block[:n, n:n + m] = b * step
+    block[n:n + m, n + m:] = np.eye(m)
+    power = expm(block)
+    transition, constant, ramp = power[:n, :n], power[:n, n:n + m], power[:n, n + m:]
+    return transition, constant - ramp + transition @ ramp, ramp
 
 
 class CausalFilter:
@@ -185,15 +223,14 @@ class CausalFilter:
         self.channels = channels
         self._omega = 2.0 * np.pi * cutoff
         # Prototype 1 / (1 + a1 s + a2 s^2 + a3 s^3 + s^4) of cutoff 1 rad/s: time in 1 / omega.
-        _, polynomial = butter(self.ORDER, 1.0, analog=True)
+        polynomial = _butterworth_polynomial(self.ORDER)
         a = np.diag(np.ones(self.ORDER - 1), 1)
         a[-1] = -polynomial[:0:-1]
         b = np.zeros((self.ORDER, 1))
         b[-1, 0] = 1.0
-        c = np.eye(3, self.ORDER)
-        step = self._omega / rate
-        self._a, self._b, self._c, self._d, _ = cont2discrete(
-            (a, b, c, np.zeros((3, 1))), step, method='foh')
+        self._a, self._b, hold = _first_order_hold(a, b, self._omega / rate)
+        self._c = np.eye(3, self.ORDER)
+        self._d = self._c @ hold
         self._scale = np.array([1.0, self._omega, self._omega**2])[:, None]
         self._rest = np.linalg.solve(np.eye(self.ORDER) - self._a, self._b)
         self.delay = float(polynomial[-2] / polynomial[-1] / self._omega)

@@ -80,14 +80,14 @@ class LiftBuilder:
         inside = (grid >= start - 1e-9) & (grid <= end + 1e-9)
         times = grid[inside]
         q, qd, qdd, status = q[inside], qd[inside], qdd[inside], status[inside]
-        forces, on_plates = self._ground(times)
-        if not on_plates:
+        forces, silent = self._ground(times)
+        if silent:
             status[status == 0] = SolveStatus.TRACKER_NO_GROUND_FORCE
         forces |= self._hands(grid, inside, rate, q, qd, qdd, estimator, support,
-                              forces['ground_force'] if on_plates else None)
+                              None if silent else forces['ground_force'])
         motion = self._skeleton.body_motion(times, q, qd, qdd, **forces)
         rms, largest = self._residuals(times, records, stamps, rate)
-        report = self._report(records, inside, status, bridged, on_plates)
+        report = self._report(records, inside, status, bridged, silent)
         lift = Lift(lift_id, 'measured', start, end, estimator.box_mass, motion, report)
         return MeasuredLift(lift, status, rms, largest)
 
@@ -109,23 +109,24 @@ class LiftBuilder:
                 bridged += int(last - first)
         return status, bridged
 
-    def _ground(self, times: Array) -> tuple[dict[str, Array], bool]:
+    def _ground(self, times: Array) -> tuple[dict[str, Array], list[str]]:
+        """Ground reaction by foot, and the plates without samples for all of the lift."""
         n = len(times)
         forces = {'ground_force': np.zeros((n, 2, 3)), 'cop': np.full((n, 2, 3), np.nan),
                   'free_moment': np.zeros((n, 2, 3))}
-        complete = True
+        silent = []
         for side, name in enumerate(SIDES):
             rows = self._wrenches[name].zero_phase_at(times, self._settings.plate_cutoff,
                                                       self._settings.margin)
             if rows is None:
-                complete = False
+                silent.append(name)
                 continue
             foot = ground_reaction(rows[:, :3], rows[:, 3:], self._plates[name],
                                    self._settings.force_threshold)
             forces['ground_force'][:, side] = foot.force
             forces['cop'][:, side] = foot.cop
             forces['free_moment'][:, side] = foot.free_moment
-        return forces, complete
+        return forces, silent
 
     def _hands(self, grid: Array, inside: npt.NDArray[np.bool_], rate: float, q: Array, qd: Array,
                qdd: Array, estimator: HandForceEstimator, support: float | None,
@@ -166,7 +167,7 @@ class LiftBuilder:
         return rms, largest
 
     def _report(self, records: Sequence[FrameRecord], inside: npt.NDArray[np.bool_],
-                status: IntArray, bridged: int, on_plates: bool) -> SolveReport:
+                status: IntArray, bridged: int, silent: Sequence[str]) -> SolveReport:
         solutions = [record.solution for record in records]
         words = [f'{int(inside.sum())} samples, markers '
                  f'{1000 * np.sqrt(np.nanmean([s.rms**2 for s in solutions])):.1f} mm rms']
@@ -181,8 +182,9 @@ class LiftBuilder:
             reasons = [s.message for s in solutions if s.message]
             if reasons:
                 words.append(reasons[0])
-        if not on_plates:
-            words.append('no complete ground reaction')
+        if silent:
+            words.append('no complete ground reaction: samples missing of the '
+                         + ' and the '.join(f'{name} plate' for name in silent))
         return SolveReport(
             status=worst, message='; '.join(words),
             iterations=sum(s.iterations for s in solutions),

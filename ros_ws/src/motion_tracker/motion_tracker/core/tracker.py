@@ -21,7 +21,7 @@ from human_model.skeleton_3d import Skeleton3D
 from human_model.subject import Subject
 from motion_tracker.core.dynamics import needed_force
 from motion_tracker.core.errors import TrackerError
-from motion_tracker.core.filters import CausalFilter
+from motion_tracker.core.filters import CausalFilter, settling_time
 from motion_tracker.core.force_plates import (
     SIDES,
     MassWatch,
@@ -109,6 +109,8 @@ class MotionTracker:
         self._box_filter: CausalFilter | None = None
         self._records: list[FrameRecord] = []
         self._input: Array | None = None
+        self._passed: float | None = None
+        self._settled = -np.inf
         self._last_q: Array | None = None
         self._absent: set[str] = set()
         self._lift: tuple[str, LiftEvent, float | None] | None = None
@@ -231,14 +233,14 @@ class MotionTracker:
 
     def _frame(self, stamp: float, target: Array) -> list[Output]:
         solution = self.inverse_kinematics.solve(target, self._last_q)
-        previous = self._records[-1].stamp if self._records else None
         self._records.append(FrameRecord(stamp, solution))
         outputs: list[Output] = []
         if not np.isfinite(solution.rms):
             self.counts['markers: frames without a pelvis'] += 1
             return outputs
         outputs += self._detect(stamp, solution)
-        outputs += self._live(stamp, previous, solution)
+        outputs += self._live(stamp, self._passed, solution)
+        self._passed = stamp
         self._last_q = solution.q
         outputs += self._lifts_due(stamp)
         self._forget(stamp)
@@ -282,6 +284,8 @@ class MotionTracker:
         if self._input is None or lost > self.settings.longest_gap * self._rate + 1e-9:
             self._filter.reset()
             self._box_filter.reset()
+            if self._input is not None:
+                self._settled = stamp + settling_time(self.settings.motion_cutoff)
             lost = 0
         for i in range(1, lost + 1):
             share = i / (lost + 1)
@@ -324,7 +328,10 @@ class MotionTracker:
             forces |= self._carry(time, q, box, missing)
         motion = self.skeleton.body_motion(time, q, qd, qdd, **forces)
         status, message = solution.status, solution.message
-        if solution.ok and missing is None:
+        if solution.ok and stamp < self._settled:
+            status = SolveStatus.TRACKER_MARKERS_MISSING
+            message = 'the filters settle after a gap in the markers'
+        elif solution.ok and missing is None:
             status = SolveStatus.TRACKER_NO_GROUND_FORCE
             message = 'no samples of ' + ' and '.join(
                 f'the {name} plate' for name in SIDES
