@@ -35,6 +35,7 @@ class LiftPredictorNode(PipelineNode):
 
     PACKAGE = 'lift_predictor'
     INPUT_ERRORS = (LiftPredictorError, HumanModelError)
+    LATER = ('scipy.interpolate', 'scipy.optimize')
 
     def build(self) -> None:
         """Load (once per machine: compile) the programme; create publishers and subscriptions."""

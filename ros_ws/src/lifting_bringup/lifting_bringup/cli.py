@@ -106,7 +106,6 @@ def _demo(options: argparse.Namespace) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
-    from lifting_bringup.results import RunFacts, write_report
     from lifting_bringup.session import RunOptions, run_online, summarise
 
     output = options.output or Path('out') / options.bag.stem
@@ -123,6 +122,9 @@ def _run(options: argparse.Namespace) -> int:
         run = f'online at {options.rate:g} times real time'
         print(f'ready to play after {outcome.time_to_play:.1f} s')
     began = time.monotonic()
+    # Loads for long: the graph need not wait for it.
+    from lifting_bringup.results import RunFacts, write_report
+
     facts = RunFacts(run, options.bag.name, summarise(options.bag).start)
     page = write_report(results, output / 'report.html', facts)
     print(f'results {results}')

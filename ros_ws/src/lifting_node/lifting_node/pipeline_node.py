@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+import importlib
+import threading
 from collections import Counter
 from collections.abc import Callable
 from typing import Any, ClassVar
@@ -26,11 +28,13 @@ class PipelineNode(LifecycleNode):
 
     A subclass sets `PACKAGE` (whose `data/parameters.yaml` it declares) and `INPUT_ERRORS`
     (exceptions of its core that mean bad input: they are logged and counted, and the node goes
-    on; any other exception is a defect and ends the process), and implements `build`.
+    on; any other exception is a defect and ends the process), and implements `build`. `LATER`
+    names modules that load for long and are first needed at the end of a lift.
     """
 
     PACKAGE: ClassVar[str]
     INPUT_ERRORS: ClassVar[tuple[type[Exception], ...]] = ()
+    LATER: ClassVar[tuple[str, ...]] = ()
 
     def __init__(self) -> None:
         super().__init__(self.PACKAGE)
@@ -95,9 +99,14 @@ class PipelineNode(LifecycleNode):
         return TransitionCallbackReturn.SUCCESS
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Start publishing."""
+        """Start publishing; load in the background what is needed later."""
         self.active = True
+        threading.Thread(target=self._load_later, name='load later').start()
         return super().on_activate(state)
+
+    def _load_later(self) -> None:
+        for name in self.LATER:
+            importlib.import_module(name)
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Stop publishing; the pipeline keeps its state."""

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import BSpline
 
 from lift_predictor.core.exceptions import SplineError
 
@@ -81,6 +80,9 @@ class RestToRestSpline:
         SplineError
             A time outside [0, 1].
         """
+        # Loads for long, and a node that starts does not need it.
+        from scipy.interpolate import BSpline
+
         s = np.asarray(s, dtype=float)
         if s.size and not (s.min() >= 0.0 and s.max() <= 1.0):
             raise SplineError(f's = {s.min():g} .. {s.max():g}: outside [0, 1]')

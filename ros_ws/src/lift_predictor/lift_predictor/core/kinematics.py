@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
 
 from lift_predictor.core.parameters import BODIES, CIRCLE_BODIES, CIRCLES_PER_BODY, LiftParameters
 
@@ -122,6 +121,9 @@ def reach(
     distance : float
         Remaining distance of the grip [m].
     """
+    # Loads for long, and a node that starts does not need it.
+    from scipy.optimize import least_squares
+
     rear, front = parameters.support
 
     def residual(q: Array, secondary: float) -> Array:

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import make_interp_spline
 
 from human_model.frames import matrix_from_quaternion
 from human_model.motion import BodyMotion
@@ -131,6 +130,9 @@ def sagittal_motion(
     sides = np.stack([_side_angles(motion, side, neutral, plane) for side in (0, 1)])
     q = sides.mean(axis=0)
     time = motion.time - start
+    # Loads for long, and a node that starts does not need it.
+    from scipy.interpolate import make_interp_spline
+
     spline = make_interp_spline(time, q, k=_SPLINE_DEGREE)
     return SagittalMotion(
         time=time,

@@ -168,7 +168,7 @@ def settling_time(cutoff: float) -> float:
 def _butterworth_polynomial(order: int) -> Array:
     """Denominator of the low-pass of cutoff 1 rad/s, highest power first, shape (order + 1,)."""
     angle = np.pi * (2.0 * np.arange(order) + order + 1.0) / (2.0 * order)
-    return np.poly(np.exp(1j * angle)).real
+    return np.asarray(np.poly(np.exp(1j * angle)).real, dtype=np.float64)
 
 
 def _first_order_hold(a: Array, b: Array, step: float) -> tuple[Array, Array, Array]:
