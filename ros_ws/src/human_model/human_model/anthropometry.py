@@ -31,7 +31,7 @@ TRUNK = ('pelvis', 'lumbar', 'thorax', 'head')
 LIMBS = ('upper_arm', 'forearm', 'hand', 'thigh', 'shank', 'foot', 'toes')
 
 #: Lengths that may be negative (offsets to the back).
-_OFFSETS = ('l5s1_forward', 't12l1_forward', 'shoulder_forward', 'c7_forward')
+_OFFSETS = ('l5s1_forward', 'sacrum_forward', 't12l1_forward', 'shoulder_forward', 'c7_forward')
 #: Lengths that may be zero (the thesis' skeletons have no such offset).
 _MAY_BE_ZERO = ('l5s1_height', 'ankle_height', 'heel_length', 'mtp_drop', 'hand_grip')
 

@@ -51,7 +51,7 @@ def subject():
 def scaled(lifting_model, subject):
     skeleton = Skeleton3D.of(subject)
     points = skeleton.points(np.zeros(len(skeleton.coordinates)))
-    return subject_model(lifting_model, points, subject.mass)
+    return subject_model(lifting_model, points, skeleton.parameters.lengths, subject.mass)
 
 
 def lift(skeleton, amplitudes, duration=2.0):
@@ -170,13 +170,17 @@ def test_motion_of_another_person_is_refused(scaled, subject):
 def test_missing_and_bad_points_are_named(lifting_model, subject):
     skeleton = Skeleton3D.of(subject)
     points = skeleton.points(np.zeros(len(skeleton.coordinates)))
-    model = compile_model(lifting_model)
+    model, lengths = compile_model(lifting_model), skeleton.parameters.lengths
     with pytest.raises(ScalingError, match="'knee_r' is missing"):
-        scale_factors(model, {k: v for k, v in points.items() if k != 'knee_r'})
+        scale_factors(model, {k: v for k, v in points.items() if k != 'knee_r'}, lengths)
     with pytest.raises(ScalingError, match="'knee_r'"):
         attach_points(model, {**points, 'knee_r': np.full(3, np.nan)})
     with pytest.raises(ScalingError, match='hip_r to knee_r'):
-        scale_factors(model, {**points, 'knee_r': points['hip_r']})
+        scale_factors(model, {**points, 'knee_r': points['hip_r']}, lengths)
+    with pytest.raises(ScalingError, match="'pelvis_depth' is missing"):
+        scale_factors(model, points, {})
+    with pytest.raises(ScalingError, match='pelvis_depth'):
+        scale_factors(model, points, {**lengths, 'pelvis_depth': np.nan})
 
 
 @pytest.mark.parametrize('heading', [0.0, 0.8, -2.5])

@@ -4,11 +4,11 @@
 
 The person stands upright, trunk and wrists straight, both feet flat: that defines the zero of the
 spine's, the wrists' and the toes' angles, which no landmark gives as well. (1) Joint centres
-follow from landmarks, segment lengths from joint centres; the heights of the trunk's joints keep
-the proportions of the anthropometric tables. (2) The posture is fitted to the joint centres and to
-the landmarks that have a place in the marker set; the height of the foot's landmarks over the
-ankle is not fitted, because the feet are known to be flat. (3) Every tracking marker gets the
-place on its segment where it was seen in that posture.
+follow from landmarks, segment lengths from joint centres, the depth of the pelvis from its iliac
+spines; the heights of the trunk's joints keep the proportions of the anthropometric tables.
+(2) The posture is fitted to the joint centres and to the landmarks that have a place in the marker
+set; the height of the foot's landmarks over the ankle is not fitted, because the feet are known to
+be flat. (3) Every tracking marker gets the place on its segment where it was seen in that posture.
 """
 
 from collections.abc import Mapping, Sequence
@@ -30,6 +30,7 @@ from motion_tracker.core.joint_centres import (
 )
 from motion_tracker.core.marker_model import MarkerModel, from_calibration
 from motion_tracker.core.marker_set import MarkerSet
+from motion_tracker.core.segment_measures import measured_lengths
 
 Array = npt.NDArray[np.float64]
 
@@ -49,7 +50,7 @@ STRAIGHT_WEIGHT = 10.0
 LARGEST_SWAY = 0.02
 
 #: The trunk's lengths, which are scaled together.
-_TRUNK = ('l5s1_forward', 'l5s1_height', 't12l1_forward', 't12l1_height', 'shoulder_forward',
+_TRUNK = ('sacrum_forward', 'sacrum_height', 't12l1_forward', 't12l1_height', 'shoulder_forward',
           'shoulder_height', 'c7_forward', 'c7_height')
 
 #: Marker on the spinous process of C7, in all sets; its height gives that of the neck's joint.
@@ -202,11 +203,32 @@ def _measure(marker_set: MarkerSet, definitions: tuple[JointDefinition, ...],
     }
     trunk = float(np.linalg.norm(centres['shoulder_r'] + centres['shoulder_l']
                                  - centres['hip_r'] - centres['hip_l'])) / 2
-    expected = float(np.hypot(
-        sum(predicted[f'{part}_forward'] for part in ('l5s1', 't12l1', 'shoulder')),
-        sum(predicted[f'{part}_height'] for part in ('l5s1', 't12l1', 'shoulder'))))
-    lengths |= {name: predicted[name] * trunk / expected for name in _TRUNK}
-    return lengths, centres
+    lengths |= measured_lengths(marker_set, markers, predicted)
+    return lengths | _trunk_lengths(trunk, lengths, predicted), centres
+
+
+def _trunk_lengths(trunk: float, measured: Mapping[str, float], predicted: Mapping[str, float],
+                   ) -> dict[str, float]:
+    """Lengths [m] of the trunk's parts that add up to the measured one from hips to shoulders.
+
+    The pelvis as far as the sacrum grows with its measured depth, sacrum and spine by one factor
+    that fills the rest: the scale set-up of the lifting full-body model does so
+    (Scaling_Setup_Pose2Sim_LSTM.xml of pose2sim 0.10.49). Without a measured depth all grow alike.
+    """
+
+    def way(*parts: str) -> Array:
+        return np.array([sum(predicted[f'{part}_{to}'] for part in parts)
+                         for to in ('forward', 'height')])
+
+    pelvis, spine = way('l5s1') - way('sacrum'), way('sacrum', 't12l1', 'shoulder')
+    alike = trunk / float(np.linalg.norm(pelvis + spine))
+    depth = measured.get('pelvis_depth', alike * predicted['pelvis_depth'])
+    pelvis = pelvis * depth / predicted['pelvis_depth']
+    along = pelvis @ spine / (spine @ spine)
+    factor = float(np.sqrt(along**2 + (trunk**2 - pelvis @ pelvis) / (spine @ spine)) - along)
+    l5s1 = pelvis + factor * way('sacrum')
+    return {'pelvis_depth': depth, 'l5s1_forward': float(l5s1[0]), 'l5s1_height': float(l5s1[1]),
+            **{name: factor * predicted[name] for name in _TRUNK}}
 
 
 def _posture(marker_set: MarkerSet, skeleton: Skeleton3D, markers: Mapping[str, Array],

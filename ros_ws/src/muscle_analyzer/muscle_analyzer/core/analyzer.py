@@ -74,7 +74,11 @@ class MuscleAnalyzer:
         skeleton = Skeleton3D.of(subject)
         upright = np.zeros(len(skeleton.coordinates))
         self._model = subject_model(
-            self._generic, skeleton.points(upright), subject.mass, self.options.strength
+            self._generic,
+            skeleton.points(upright),
+            skeleton.parameters.lengths,
+            subject.mass,
+            self.options.strength,
         )
         self._subject = subject
         self._streams = {}

@@ -10,7 +10,10 @@ standing with hanging arms and palms in: all coordinates zero but those of
 `data/upright_posture.csv`. That is the posture of the skeletons of `human_model` at zero
 coordinates, in which all shared frames are parallel to the world's.
 
-`data/scale_rules.csv` says which distance between points gives a body's scale factors.
+`data/scale_rules.csv` says which distance between points, or which length of the subject that no
+two points hold (`data/model_lengths.csv` has the model's), gives a body's scale factors. The
+sacrum, welded to the pelvis, takes what the pelvis' factors leave of the way to the lumbosacral
+joint (`rest`), so that this joint is where the subject has it.
 """
 
 from __future__ import annotations
@@ -131,7 +134,17 @@ def _with_middles(points: dict[str, Array]) -> dict[str, Array]:
     return points
 
 
-def scale_factors(model: MultibodyModel, points: Mapping[str, Array]) -> dict[str, Array]:
+def _lengths(name: str, lengths: Mapping[str, float]) -> tuple[float, float]:
+    """Return a length of the subject and the same of the unscaled model, m."""
+    if name not in lengths:
+        raise ScalingError(f'lengths of the subject: {name!r} is missing')
+    model = next(row for row in _table('model_lengths') if row['length'] == name)
+    return float(lengths[name]), float(model['value'])
+
+
+def scale_factors(
+    model: MultibodyModel, points: Mapping[str, Array], lengths: Mapping[str, float]
+) -> dict[str, Array]:
     """Return the factors (3,) per body that give the model the subject's dimensions.
 
     Parameters
@@ -140,30 +153,40 @@ def scale_factors(model: MultibodyModel, points: Mapping[str, Array]) -> dict[st
         The generic model.
     points : mapping of str to (3,) array
         The subject's shared points in upright standing with hanging arms, REP-103 axes, m.
+    lengths : mapping of str to float
+        The subject's segment lengths, m (`human_model.anthropometry`).
 
     Raises
     ------
     ScalingError
-        If a point is missing or not finite, or a rule's distance is zero.
+        If a point or length is missing or not finite, or a rule's distance is zero.
     """
     subject = _subject_points(points)
     generic = _with_middles(generic_points(model))
     factors = {name: np.full(3, np.nan) for name in model.body_names[1:]}
     for row in _table('scale_rules'):
-        columns = _MEASURES[row['measure']]
-        lengths = [
-            float(np.linalg.norm((source[row['to']] - source[row['from']])[columns]))
-            for source in (subject, generic)
-        ]
         if row['body'] not in factors:
             raise ScalingError(f'scale rule for body {row["body"]!r}, which the model has not')
-        if min(lengths) <= 0.0:
-            raise ScalingError(
-                f'{row["from"]} to {row["to"]} ({row["measure"]}): {lengths[0]} m of the subject, '
-                f'{lengths[1]} m of the model'
-            )
+        ways = [source[row['to']] - source[row['from']] if row['to'] else np.zeros(3)
+                for source in (subject, generic)]
         for axis in row['axes']:
-            factors[row['body']]['xyz'.index(axis)] = lengths[0] / lengths[1]
+            k = 'xyz'.index(axis)
+            match row['measure']:
+                case 'length':
+                    own, models = _lengths(row['from'], lengths)
+                case 'rest':
+                    joint = upright_state(model).joint_position[model.body_index(row['body'])]
+                    before = joint[k] - generic[row['from']][k]
+                    own, models = ways[0][k] - factors['pelvis'][k] * before, ways[1][k] - before
+                case measure:
+                    own, models = (float(np.linalg.norm(way[_MEASURES[measure]])) for way in ways)
+            if not own * models > 0.0:
+                between = f'{row["from"]} to {row["to"]}' if row['to'] else row['from']
+                raise ScalingError(
+                    f'{between} ({row["measure"]}): {own} m of the subject, '
+                    f'{models} m of the model'
+                )
+            factors[row['body']][k] = own / models
     for name, factor in factors.items():
         if not np.all(np.isfinite(factor)):
             raise ScalingError(f'no scale rule for all axes of body {name!r}')

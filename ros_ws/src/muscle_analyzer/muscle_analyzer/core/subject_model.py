@@ -76,6 +76,7 @@ def default_path_lengths(model: OsimModel) -> Array:
 def subject_model(
     generic: OsimModel,
     points: Mapping[str, Array],
+    lengths: Mapping[str, float],
     mass: float,
     strength: StrengthScaling = StrengthScaling.NONE,
 ) -> SubjectModel:
@@ -87,6 +88,8 @@ def subject_model(
     points : mapping of str to (3,) array
         The subject's shared points in upright standing with hanging arms (`human_model` skeleton
         at zero coordinates), REP-103 axes, m.
+    lengths : mapping of str to float
+        The subject's segment lengths, m (`human_model.anthropometry`).
     mass : float
         kg.
     strength : StrengthScaling
@@ -96,6 +99,6 @@ def subject_model(
     ScalingError
         If points are missing or factors are not positive.
     """
-    factors = scale_factors(compile_model(generic), points)
+    factors = scale_factors(compile_model(generic), points, lengths)
     scaled = compile_model(scale_model(generic, factors, mass, default_path_lengths, strength))
     return SubjectModel(scaled, attach_points(scaled, points), factors)
