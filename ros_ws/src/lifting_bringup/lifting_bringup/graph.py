@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -20,6 +21,9 @@ from lifting_bringup.node_process import NODES, NodeProcess, start_module
 
 #: Time [s] a node has for one lifecycle transition; the first start compiles the models.
 TRANSITION_TIMEOUT = 300.0
+
+#: Time [s] of silence after which it is told what is being waited for.
+PATIENCE = 10.0
 
 
 class Graph:
@@ -37,6 +41,8 @@ class Graph:
         Where the nodes' output goes.
     parameters : dict of dict, optional
         Parameter overrides by node name.
+    say : callable, optional
+        Takes a line for the user when a start takes long.
     """
 
     def __init__(
@@ -46,12 +52,14 @@ class Graph:
         station: str,
         log_folder: Path,
         parameters: dict[str, dict[str, object]] | None = None,
+        say: Callable[[str], None] = lambda text: None,
     ) -> None:
         self._node = node
         self._executor = executor
         self._station = station
         self._log_folder = log_folder
         self._parameters = parameters or {}
+        self._say = say
         self.processes: list[NodeProcess] = []
 
     def __enter__(self) -> Self:
@@ -104,7 +112,9 @@ class Graph:
         return codes
 
     def _transition_all(self, transition: int, name: str) -> None:
-        deadline = time.monotonic() + TRANSITION_TIMEOUT
+        began = time.monotonic()
+        deadline = began + TRANSITION_TIMEOUT
+        patient = True
         clients: dict[str, Client[Any, Any, Any]] = {
             process.name: self._node.create_client(
                 ChangeState, f'/{self._station}/{process.name}/change_state'
@@ -118,9 +128,13 @@ class Graph:
                 if node_name not in futures and client.service_is_ready():
                     request = ChangeState.Request(transition=Transition(id=transition))
                     futures[node_name] = client.call_async(request)
+            waiting = [n for n in clients if n not in futures or not futures[n].done()]
             if time.monotonic() > deadline:
-                waiting = [n for n in clients if n not in futures or not futures[n].done()]
                 raise TransitionError(f'{name}: no answer from {", ".join(waiting)}')
+            if patient and waiting and time.monotonic() > began + PATIENCE:
+                patient = False
+                self._say(f'waiting for {", ".join(waiting)} to {name}: after a change of the '
+                          'code they compile their models, which takes a minute or two')
             self._executor.spin_once(timeout_sec=0.02)
         for client in clients.values():
             self._node.destroy_client(client)

@@ -168,7 +168,7 @@ def run_online(options: RunOptions, say: Callable[[str], None] = print) -> RunRe
     executor.add_node(node)
     helpers: list[NodeProcess] = []
     parameters = {'motion_tracker': {'wait': summary.stream_wait}}
-    graph = Graph(node, executor, options.station, logs, parameters)
+    graph = Graph(node, executor, options.station, logs, parameters, say)
     try:
         graph.start()
         helpers += _start_helpers(options, logs, summary)
