@@ -6,6 +6,9 @@ from __future__ import annotations
 
 import math
 import time
+from collections import deque
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from lifting_interfaces.msg import (
@@ -62,6 +65,7 @@ class InjuryMonitorNode(PipelineNode):
         self._collector = LiftCollector(self.values['result_wait'])
         self._subject: Subject | None = None
         self._task: Task | None = None
+        self._early: deque[Callable[[], None]] = deque(maxlen=qos.FRAME_DEPTH)
         self.filter_delay = math.nan
         self._alarms = self.advertise(AlarmEvent, 'alarms', qos.RESULTS)
         self._assessments = self.advertise(RiskAssessment, 'risk_assessment', qos.RESULTS)
@@ -105,6 +109,8 @@ class InjuryMonitorNode(PipelineNode):
             f'limits: compression {limits.compression_action.value:g} and '
             f'{limits.compression_maximum.value:g} N, anterior shear {limits.shear.value:g} N '
             f'({limits.loads_per_day:g} loads a day)')
+        while self._early:
+            self._early.popleft()()
 
     def _on_body_motion(self, message: BodyMotion) -> None:
         self.filter_delay = message.filter_delay
@@ -124,7 +130,7 @@ class InjuryMonitorNode(PipelineNode):
         series = conversions.spine_from_msg(message)
         if source:
             self._collect(message.lift_id, lambda parts: parts.spine.update({source: series}))
-        elif self._ready_for_samples():
+        elif self._ready_for_samples(partial(self._on_spine_load, message)):
             for row in zip(series.time, series.compression, series.anterior_shear, series.solved,
                            strict=True):
                 self._announce(self.monitor.update_spine_load(
@@ -136,7 +142,7 @@ class InjuryMonitorNode(PipelineNode):
         series = conversions.torques_from_msg(message)
         if source:
             self._collect(message.lift_id, lambda parts: parts.torques.update({source: series}))
-        elif self._ready_for_samples():
+        elif self._ready_for_samples(partial(self._on_joint_torques, message)):
             for k, stamp in enumerate(series.time):
                 self._announce(self.monitor.update_joint_torques(
                     float(stamp), series.joints, series.torque[k], series.lower[k],
@@ -149,7 +155,7 @@ class InjuryMonitorNode(PipelineNode):
         if source:
             self._collect(message.lift_id,
                           lambda parts: parts.activations.update({source: series}))
-        elif self._ready_for_samples():
+        elif self._ready_for_samples(partial(self._on_muscle_analysis, message)):
             for k, stamp in enumerate(series.time):
                 self._announce(self.monitor.update_activations(
                     float(stamp), series.muscles, series.activation[k], bool(series.solved[k]),
@@ -173,11 +179,13 @@ class InjuryMonitorNode(PipelineNode):
 
             self._collect(message.lift_id, take)
 
-    def _ready_for_samples(self) -> bool:
-        """Return whether live samples can be judged; count those that come too early."""
+    def _ready_for_samples(self, later: Callable[[], None]) -> bool:
+        """Return whether live samples can be judged; keep those that overtake person and task."""
         if self.active and self.monitor.work is not None:
             return True
         self.counts['samples before person and task or while not active'] += 1
+        if self.active:
+            self._early.append(later)
         return False
 
     def _collect(self, lift_id: str, take: Any) -> None:

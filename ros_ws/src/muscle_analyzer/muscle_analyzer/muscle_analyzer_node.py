@@ -4,7 +4,8 @@
 
 from __future__ import annotations
 
-from collections import OrderedDict
+import math
+from collections import OrderedDict, deque
 from pathlib import Path
 from typing import Final
 
@@ -57,6 +58,8 @@ class MuscleAnalyzerNode(PipelineNode):
         self.analyzer.prepare()
         self._subject: Subject | None = None
         self._box_mass = float('nan')
+        # Topics overtake each other: motion may come before the person and the task it belongs to.
+        self._early: deque[BodyMotion] = deque(maxlen=qos.FRAME_DEPTH)
         self._waiting: OrderedDict[tuple[str, str], MeasuredLift | PredictedLift] = OrderedDict()
         self._muscles = self.advertise(MuscleAnalysis, 'muscle_analysis', qos.FRAMES)
         self._spine = self.advertise(SpineLoad, 'spine_load', qos.FRAMES)
@@ -80,13 +83,23 @@ class MuscleAnalyzerNode(PipelineNode):
         self.analyzer.configure(subject)
         self._subject = subject
         self._analyze_waiting()
+        self._work_off_early()
 
     def _on_task(self, message: Task) -> None:
         self._box_mass = message.box_mass
+        self._work_off_early()
+
+    def _work_off_early(self) -> None:
+        while self._early and self._subject is not None and not math.isnan(self._box_mass):
+            self._on_body_motion(self._early.popleft())
 
     def _on_body_motion(self, message: BodyMotion) -> None:
-        if self._subject is None or not self.active:
-            self.counts['samples before the person or while not active'] += 1
+        if not self.active:
+            self.counts['samples while not active'] += 1
+            return
+        if self._subject is None or math.isnan(self._box_mass):
+            self.counts['samples before person and task'] += 1
+            self._early.append(message)
             return
         motion = conversions.motion_from_msg(message)
         mass = conversions.mass_in_hands(motion, self._box_mass)
