@@ -150,7 +150,7 @@ def drop_compiled_functions() -> None:
 
 def compile_functions() -> None:
     """Have every pipeline compile its functions, so that no node does it when it starts."""
-    say('compiling the functions of the pipelines (one to two minutes, once)')
+    say('compiling the functions of the pipelines (about a minute, once)')
     run(VENV / 'bin' / 'python', '-m', 'lifting_bringup.warm_up')
 
 
