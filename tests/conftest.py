@@ -127,20 +127,8 @@ def offline(tmp_path_factory):
 
 
 @pytest.fixture(scope='session')
-def squats_bag(tmp_path_factory):
-    """Return the real squats, imported."""
-    from lifting_bringup.bags.importer import ImportOptions, import_recording
-
+def squats_files():
+    """Return the folder of the real squats."""
     if not SQUATS.is_dir():
         pytest.skip(f'the real recording is not beside the repository ({SQUATS})')
-    bag = tmp_path_factory.mktemp('real') / 'squats'
-    import_recording(
-        ImportOptions(
-            markers=SQUATS / 'squats1.trc',
-            forces=SQUATS / 'squats1_grf.mot',
-            static=SQUATS / 'static1.trc',
-            subject=BAGS / 'subjects' / 'squats_bodyweight.yaml',
-            output=bag,
-        )
-    )
-    return bag
+    return SQUATS
