@@ -129,7 +129,15 @@ LABELS = (
     Label(626, 100, ('markers', 'force_plates/{right,left}/wrench', 'box/pose')),
     Label(20, 108, ('subject, task',)),
     Label(20, 124, ('from the bag to every node',), 'what'),
-    Label(698, 176, ('joint_states, lift_event', 'force_plates/{right,left}/cop')),
+    Label(
+        698,
+        164,
+        (
+            'joint_states, lift_event',
+            'ground_reaction/{wrench,cop}',
+            'force_plates/{right,left}/cop',
+        ),
+    ),
     Label(198, 254, ('measured_lift',)),
     Label(726, 290, ('body_motion (live)', 'measured_lift')),
     Label(484, 280, ('measured_lift', 'body_motion (once)'), 'topic', 'end'),

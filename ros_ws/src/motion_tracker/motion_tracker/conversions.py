@@ -12,6 +12,7 @@ from geometry_msgs.msg import PointStamped, PoseStamped, WrenchStamped
 from lifting_interfaces.msg import BodyMotion, LiftEvent, Markers, MeasuredLift, Task
 from sensor_msgs.msg import JointState
 
+from human_model.report import SolveStatus
 from human_model.subject import Subject
 from lifting_node.conversions import LABORATORY, MotionQuality, flat, lift_to_msg, motion_to_msg
 from lifting_node.stamps import to_seconds, to_stamp
@@ -74,15 +75,33 @@ def body_motion_to_msg(frame: TrackedFrame) -> BodyMotion:
     return motion_to_msg(frame.motion, quality)
 
 
-def cop_to_msg(frame: TrackedFrame, side: int) -> PointStamped | None:
-    """Return the centre of pressure of the right (0) or left (1) foot; None while unloaded."""
-    at = frame.motion.cop[0, side]
+def cop_to_msg(frame: TrackedFrame, side: int | None = None) -> PointStamped | None:
+    """Return the centre of pressure of the right (0), left (1) or both feet (None).
+
+    None while unloaded.
+    """
+    at = frame.total_cop if side is None else frame.motion.cop[0, side]
     if not np.all(np.isfinite(at)):
         return None
     message = PointStamped()
     message.header.stamp = to_stamp(float(frame.motion.time[0]))
     message.header.frame_id = LABORATORY
     message.point.x, message.point.y, message.point.z = (float(value) for value in at)
+    return message
+
+
+def ground_reaction_to_msg(frame: TrackedFrame) -> WrenchStamped | None:
+    """Return the force of the ground on both feet, at their common centre of pressure.
+
+    None without plates; the moment about that point is that of the body motion's feet.
+    """
+    if frame.status == SolveStatus.TRACKER_NO_GROUND_FORCE:
+        return None
+    message = WrenchStamped()
+    message.header.stamp = to_stamp(float(frame.motion.time[0]))
+    message.header.frame_id = LABORATORY
+    force = message.wrench.force
+    force.x, force.y, force.z = (float(value) for value in frame.total_force)
     return message
 
 

@@ -69,6 +69,8 @@ class MotionTrackerNode(PipelineNode):
         self._motion = self.advertise(BodyMotion, 'body_motion', qos.FRAMES)
         self._events = self.advertise(LiftEvent, 'lift_event', qos.RESULTS)
         self._measured = self.advertise(MeasuredLift, 'measured_lift', qos.RESULTS)
+        self._reaction = self.advertise(WrenchStamped, 'ground_reaction/wrench', qos.FRAMES)
+        self._total_cop = self.advertise(PointStamped, 'ground_reaction/cop', qos.FRAMES)
         self._cop = [self.advertise(PointStamped, f'force_plates/{side}/cop', qos.FRAMES)
                      for side in SIDES]
         self.subscribe(SubjectMsg, 'subject', self._on_subject, qos.LATCHED)
@@ -202,7 +204,10 @@ class MotionTrackerNode(PipelineNode):
     def _publish_one(self, output: Any) -> None:
         if isinstance(output, TrackedFrame):
             self._joints.publish(conversions.joint_state_to_msg(output))
-            for side, publisher in enumerate(self._cop):
+            reaction = conversions.ground_reaction_to_msg(output)
+            if reaction is not None:
+                self._reaction.publish(reaction)
+            for side, publisher in ((None, self._total_cop), *enumerate(self._cop)):
                 point = conversions.cop_to_msg(output, side)
                 if point is not None:
                     publisher.publish(point)

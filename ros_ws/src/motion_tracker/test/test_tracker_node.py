@@ -28,6 +28,7 @@ from rclpy.serialization import deserialize_message  # noqa: E402
 from sensor_msgs.msg import JointState  # noqa: E402
 from std_srvs.srv import Trigger  # noqa: E402
 
+from human_model.report import SolveStatus  # noqa: E402
 from lifting_node import qos  # noqa: E402
 from lifting_node.conversions import lift_from_msg, subject_from_msg  # noqa: E402
 from motion_tracker import conversions  # noqa: E402
@@ -46,7 +47,9 @@ INPUTS = {
 OUTPUTS = {
     'joint_states': (JointState, qos.FRAMES), 'body_motion': (BodyMotion, qos.FRAMES),
     'lift_event': (LiftEvent, qos.RESULTS), 'measured_lift': (MeasuredLift, qos.RESULTS),
-    'force_plates/right/cop': (PointStamped, qos.FRAMES)}
+    'force_plates/right/cop': (PointStamped, qos.FRAMES),
+    'ground_reaction/wrench': (WrenchStamped, qos.FRAMES),
+    'ground_reaction/cop': (PointStamped, qos.FRAMES)}
 
 
 @pytest.fixture(scope='module')
@@ -161,6 +164,12 @@ def test_a_recording_over_topics_gives_what_the_core_gives(station, recording):
     assert [e.event for e in station.received['lift_event']] == [LiftEvent.START, LiftEvent.END]
     assert len(station.received['joint_states']) == len(frames)
     assert station.received['force_plates/right/cop']
+    loaded = [frame for frame in frames if frame.status != SolveStatus.TRACKER_NO_GROUND_FORCE]
+    total = [m.wrench.force.z for m in station.received['ground_reaction/wrench']]
+    assert total == [frame.motion.ground_force[0, :, 2].sum() for frame in loaded]
+    for message, frame in zip(station.received['ground_reaction/cop'], loaded, strict=True):
+        share = frame.motion.ground_force[0, :, 2] / frame.motion.ground_force[0, :, 2].sum()
+        assert message.point.y == pytest.approx(share @ frame.motion.cop[0, :, 1], abs=1e-9)
     assert station.node.counts['errors'] == 0
 
 
