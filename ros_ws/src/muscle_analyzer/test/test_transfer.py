@@ -183,6 +183,28 @@ def test_missing_and_bad_points_are_named(lifting_model, subject):
         scale_factors(model, points, {**lengths, 'pelvis_depth': np.nan})
 
 
+def test_deep_pelvis_keeps_the_lumbosacral_joint(lifting_model, subject):
+    """The pelvis takes the measured depth; hips, L5-S1 and hence lever arms of weights stay."""
+    usual = Skeleton3D.of(subject)
+    depth = 1.12 * usual.parameters.lengths['pelvis_depth']
+    deep = Skeleton3D.of(replace(subject, lengths={'pelvis_depth': depth}))
+    places, factors = [], []
+    for skeleton in (usual, deep):
+        points = skeleton.points(np.zeros(len(skeleton.coordinates)))
+        scaled = subject_model(
+            lifting_model, points, skeleton.parameters.lengths, subject.mass
+        )
+        model = scaled.multibody
+        at = upright_state(model).joint_position
+        hips = 0.5 * (at[model.body_index('femur_r')] + at[model.body_index('femur_l')])
+        l5s1 = from_opensim(at[model.body_index('lumbar5')] - hips)
+        assert l5s1 == pytest.approx(points['l5_s1'] - points['pelvis'], abs=1e-9)
+        places.append(l5s1)
+        factors.append(scaled.factors['pelvis'])
+    assert places[0] == pytest.approx(places[1], abs=1e-9)
+    assert factors[1] / factors[0] == pytest.approx([1.12, 1.12, 1.0])
+
+
 @pytest.mark.parametrize('heading', [0.0, 0.8, -2.5])
 def test_sagittal_motion_may_stand_anywhere(scaled, subject, heading):
     """Points and frames turned about the vertical and shifted, coordinates in the own plane."""
