@@ -187,6 +187,12 @@ def _add_conventions(parser: argparse.ArgumentParser) -> None:
     group.add_argument('--facing', metavar='AXIS', help='for example +x')
     group.add_argument('--floor-height', type=float, default=0.0, help='[m]')
     group.add_argument(
+        '--mass-tolerance',
+        type=float,
+        default=0.05,
+        help='accepted deviation of the weight on the plates from the mass (default: 0.05)',
+    )
+    group.add_argument(
         '--plate', action='append', default=[], metavar='NAME=SIDE', help='for example 1=right'
     )
 
@@ -207,6 +213,7 @@ def _import(options: argparse.Namespace) -> int:
                 vertical=options.vertical,
                 facing=options.facing,
                 floor_height=options.floor_height,
+                mass_tolerance=options.mass_tolerance,
                 plates=dict(entry.split('=', 1) for entry in options.plate),
             ),
         )

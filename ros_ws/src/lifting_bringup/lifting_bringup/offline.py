@@ -94,6 +94,7 @@ class OfflineGraph:
         )
         self._collector = LiftCollector(values['result_wait'])
         self._filter_delay = math.nan
+        self.samples_left_out = 0
 
     def feed(self, topic: str, message: Any) -> None:
         """Take one message of the recording; an input error is reported and the run goes on."""
@@ -105,7 +106,12 @@ class OfflineGraph:
     def flush(self) -> None:
         """End of the recording."""
         if self._tracker is None:
-            raise SessionError('nothing was tracked: the recording has no subject and task')
+            raise SessionError(
+                'nothing was tracked: subject and task are missing or were refused; '
+                f'{self.samples_left_out} samples left out'
+            )
+        if self.samples_left_out:
+            self._complain(f'{self.samples_left_out} samples came before subject and task')
         self._take(self._tracker.flush())
 
     def _feed(self, topic: str, message: Any) -> None:
@@ -114,8 +120,8 @@ class OfflineGraph:
             self._begin()
             return
         if self._tracker is None:
-            raise MotionTrackerError('a sample comes before subject and task')
-        if topic == 'markers':
+            self.samples_left_out += 1
+        elif topic == 'markers':
             self._take(self._tracker.push_markers(*tracker_messages.markers_from_msg(message)))
         elif topic == 'box/pose':
             self._take(self._tracker.push_box(*tracker_messages.box_from_msg(message)))

@@ -7,7 +7,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +17,7 @@ from human_model.report import SolveStatus
 from injury_monitor.core.alarm import AlarmState
 from lift_predictor.core.exceptions import LiftPredictorError
 from lift_predictor.core.person import Person
+from lifting_bringup import __version__
 from lifting_bringup import results_curves as curves
 from lifting_bringup.report.assessed import lifting_from_assessment, risk_from_assessment
 from lifting_bringup.report.data import (
@@ -108,10 +108,6 @@ def report_data(results: Results, facts: RunFacts) -> ReportData:
 
 def _header(results: Results, facts: RunFacts) -> Header:
     subject, task = results.subject, results.task
-    try:
-        release = version('lifting_bringup')
-    except PackageNotFoundError:
-        release = 'source'
     return Header(
         subject=subject.pseudonym,
         sex='male' if subject.sex == Subject.SEX_MALE else 'female',
@@ -129,7 +125,7 @@ def _header(results: Results, facts: RunFacts) -> Header:
         duration_hours=task.duration_hours,
         run=facts.run,
         created=datetime.now(UTC).strftime('%Y-%m-%d %H:%M UTC'),
-        version=release,
+        version=__version__,
     )
 
 

@@ -101,8 +101,8 @@ def _index_card(what: str, risk: Risk, name: str) -> Card:
     rows = [('where', text(shown.detail) or '–'), ('limit', amount(shown.limit, digits=2)),
             ('margin', amount(shown.margin, digits=2))]
     if shown is measured and predicted is not None and not math.isnan(predicted.value):
-        rows.append(('optimal lift', f'{amount(predicted.value, digits=2)} '
-                     f'({text(predicted.detail)})'))
+        where = f' ({text(predicted.detail)})' if predicted.detail else ''
+        rows.append(('optimal lift', amount(predicted.value, digits=2) + where))
     return Card(text(what), amount(shown.value, digits=2), verdict, level, tuple(rows))
 
 
