@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import math
+import struct
 
 import numpy as np
 import numpy.typing as npt
@@ -23,6 +24,12 @@ from motion_tracker.core.tracked import MeasuredLift as TrackedLift
 
 Array = npt.NDArray[np.float64]
 
+# Common data representation: head of a message, stamp with the length of the frame's name.
+_CDR_HEAD = 4
+_LITTLE_ENDIAN = 1
+_STAMP = struct.Struct('<iII')
+_DOUBLE = 8
+
 
 def markers_from_msg(message: Markers) -> tuple[float, list[str], Array]:
     """Return stamp [s], names and positions (n, 3) [m] of a marker frame."""
@@ -37,6 +44,28 @@ def wrench_from_msg(message: WrenchStamped) -> tuple[float, Array, Array]:
     force, moment = message.wrench.force, message.wrench.torque
     return (to_seconds(message.header.stamp), np.array([force.x, force.y, force.z]),
             np.array([moment.x, moment.y, moment.z]))
+
+
+def wrench_from_cdr(data: bytes) -> tuple[float, Array, Array]:
+    """Return the same of a serialised message, without building the message.
+
+    Two plates send thousands of samples a second; the message objects would cost more than the
+    whole tracker.
+
+    Raises
+    ------
+    TrackerError
+        If the data are no little-endian WrenchStamped.
+    """
+    if len(data) < _CDR_HEAD + _STAMP.size or data[1] != _LITTLE_ENDIAN:
+        raise TrackerError(f'wrench: {len(data)} bytes are no little-endian WrenchStamped')
+    seconds, nanoseconds, length = _STAMP.unpack_from(data, _CDR_HEAD)
+    begin = _STAMP.size + length
+    begin += _CDR_HEAD + (-begin) % _DOUBLE
+    if len(data) < begin + 6 * _DOUBLE:
+        raise TrackerError(f'wrench: cut off after {len(data)} bytes')
+    values = np.frombuffer(data, '<f8', 6, begin)
+    return seconds + nanoseconds / 1e9, values[:3], values[3:]
 
 
 def box_from_msg(message: PoseStamped) -> tuple[float, Array]:

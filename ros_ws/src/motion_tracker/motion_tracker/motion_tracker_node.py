@@ -79,7 +79,7 @@ class MotionTrackerNode(PipelineNode):
         self.subscribe(PoseStamped, STREAMS['box'], self._on_box, qos.FRAMES)
         for side in SIDES:
             self.subscribe(WrenchStamped, STREAMS[side],
-                           partial(self._on_wrench, side), qos.PLATES)
+                           partial(self._on_wrench, side), qos.PLATES, raw=True)
         self._flush_service = self.create_service(Trigger, '~/flush', self._on_flush)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -117,8 +117,8 @@ class MotionTrackerNode(PipelineNode):
         stamp, position = conversions.box_from_msg(message)
         self._take('box', stamp, lambda tracker: tracker.push_box(stamp, position))
 
-    def _on_wrench(self, side: str, message: WrenchStamped) -> None:
-        stamp, force, moment = conversions.wrench_from_msg(message)
+    def _on_wrench(self, side: str, data: bytes) -> None:
+        stamp, force, moment = conversions.wrench_from_cdr(data)
         self._take(side, stamp, lambda tracker: tracker.push_wrench(side, stamp, force, moment))
 
     def _take(self, stream: str, stamp: float, feed: Feed) -> None:

@@ -1,0 +1,45 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""A serialised wrench is read as the message would be."""
+
+import numpy as np
+import pytest
+
+pytest.importorskip('lifting_interfaces.msg', reason='the interface package is not built')
+
+from geometry_msgs.msg import WrenchStamped
+from hypothesis import given
+from hypothesis import strategies as st
+from rclpy.serialization import serialize_message
+
+from motion_tracker.conversions import wrench_from_cdr, wrench_from_msg
+from motion_tracker.core.errors import TrackerError
+
+NUMBER = st.floats(-1e4, 1e4)
+
+
+@given(st.text('abc_/é', max_size=20), st.tuples(*[NUMBER] * 6), st.integers(0, 2_000_000_000))
+def test_any_wrench_is_read_like_its_message(frame, values, seconds):
+    message = WrenchStamped()
+    message.header.frame_id = frame
+    message.header.stamp.sec, message.header.stamp.nanosec = seconds, 123_456_789
+    force, torque = message.wrench.force, message.wrench.torque
+    force.x, force.y, force.z, torque.x, torque.y, torque.z = values
+    expected = wrench_from_msg(message)
+    read = wrench_from_cdr(serialize_message(message))
+    assert read[0] == expected[0]
+    assert np.array_equal(read[1], expected[1])
+    assert np.array_equal(read[2], expected[2])
+
+
+@pytest.mark.parametrize('keep', [0, 10, 40])
+def test_a_cut_off_wrench_is_refused(keep):
+    with pytest.raises(TrackerError, match='wrench'):
+        wrench_from_cdr(serialize_message(WrenchStamped())[:keep])
+
+
+def test_a_big_endian_wrench_is_refused():
+    data = bytearray(serialize_message(WrenchStamped()))
+    data[1] = 0
+    with pytest.raises(TrackerError, match='little-endian'):
+        wrench_from_cdr(bytes(data))
