@@ -3,8 +3,8 @@
 """Table of peak L5-S1 loads of the simulated lifts beside those of the dissertation.
 
 `python benchmarks/lifts_table.py`, by hand, in the repository's root. The dissertation's values
-(Zaman 2022, chapter IV, its measured lifts of a man of 63.5 kg and 1.69 m) are of other recordings
-than ours, which are simulated: the two are put side by side, not fitted to each other.
+(Zaman 2022, chapter IV, predicted lifts of a man of 63.5 kg and 1.69 m) are of other postures than
+ours, whose recordings are simulated: the two are put side by side, not fitted to each other.
 """
 
 from __future__ import annotations
