@@ -17,7 +17,7 @@ from lifting_bringup.graph_errors import NodeDiedError
 NODES = ('muscle_analyzer', 'lift_predictor', 'motion_tracker', 'injury_monitor')
 
 #: Time [s] a process has to end after SIGTERM before it is killed.
-STOP_TIMEOUT = 5.0
+STOP_TIMEOUT = 15.0
 
 
 @dataclass
