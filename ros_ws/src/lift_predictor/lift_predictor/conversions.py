@@ -15,10 +15,10 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from human_model.motion import Lift
 from human_model.subject import Subject
-from lift_predictor.core.comparison import COMPARED_JOINTS, LiftComparison
-from lift_predictor.core.parameters import JOINTS
-from lift_predictor.core.prediction import PredictedLift2D
-from lift_predictor.core.task import Box
+from lift_predictor.core.sagittal.comparison import COMPARED_JOINTS, LiftComparison
+from lift_predictor.core.sagittal.parameters import JOINTS
+from lift_predictor.core.sagittal.prediction import PredictedLift2D
+from lift_predictor.core.sagittal.task import Box
 from lifting_node.conversions import (
     LABORATORY,
     MotionQuality,

@@ -15,15 +15,15 @@ from human_model.motion import Lift
 from human_model.report import SolveReport
 from human_model.subject import Subject
 from lift_predictor.core.bspline import RestToRestSpline
-from lift_predictor.core.comparison import LiftComparison
-from lift_predictor.core.evaluation import evaluate, sample
-from lift_predictor.core.kinematics import pelvis_motion, reach
-from lift_predictor.core.node_functions import node_functions
-from lift_predictor.core.parameters import JOINTS, LiftParameters
-from lift_predictor.core.person import Person
-from lift_predictor.core.prediction import PredictedLift2D
 from lift_predictor.core.predictor import LiftPredictor
-from lift_predictor.core.task import Box
+from lift_predictor.core.sagittal.comparison import LiftComparison
+from lift_predictor.core.sagittal.evaluation import evaluate, sample
+from lift_predictor.core.sagittal.kinematics import pelvis_motion, reach
+from lift_predictor.core.sagittal.node_functions import node_functions
+from lift_predictor.core.sagittal.parameters import JOINTS, LiftParameters
+from lift_predictor.core.sagittal.person import Person
+from lift_predictor.core.sagittal.prediction import PredictedLift2D
+from lift_predictor.core.sagittal.task import Box
 
 BOX_DEPTH, BOX_HEIGHT = 0.238, 0.127
 BOX_GAP, SHELF_GAP, SHELF_HEIGHT = 0.033, 0.305, 0.9

@@ -7,10 +7,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from lift_predictor.core.comparison import COMPARED_JOINTS, compare, pearson, rms_difference
-from lift_predictor.core.evaluation import evaluate
-from lift_predictor.core.parameters import JOINTS
-from lift_predictor.core.task import build_task
+from lift_predictor.core.sagittal.comparison import (
+    COMPARED_JOINTS,
+    compare,
+    pearson,
+    rms_difference,
+)
+from lift_predictor.core.sagittal.evaluation import evaluate
+from lift_predictor.core.sagittal.parameters import JOINTS
+from lift_predictor.core.sagittal.task import build_task
 
 
 def test_pearson_and_rms() -> None:

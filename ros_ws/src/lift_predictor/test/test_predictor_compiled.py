@@ -13,10 +13,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lift_predictor.core import compiled
-from lift_predictor.core.compiled import build_programme, cache_directory, content_hash
-from lift_predictor.core.nlp import Grid
-from lift_predictor.core.parameters import LiftParameters
+from lift_predictor.core.sagittal.nlp import Grid
+from lift_predictor.core.sagittal.parameters import LiftParameters
+from lift_predictor.core.solvers import compiled
+from lift_predictor.core.solvers.compiled import build_programme, cache_directory, content_hash
 
 GRID = Grid(5, 5)
 
@@ -35,8 +35,8 @@ def test_cache_directory_follows_the_environment(
 
 
 BUILD = """
-from lift_predictor.core.compiled import build_programme
-from lift_predictor.core.nlp import Grid
+from lift_predictor.core.solvers.compiled import build_programme
+from lift_predictor.core.sagittal.nlp import Grid
 print(build_programme(Grid(5, 5)).how)
 """
 

@@ -14,7 +14,7 @@ from lifting_interfaces.msg import SolveReport, Task
 
 from lift_predictor import conversions
 from lift_predictor.core.exceptions import TaskError
-from lift_predictor.core.task import Box
+from lift_predictor.core.sagittal.task import Box
 
 UNKNOWN = Point(x=np.nan, y=np.nan, z=np.nan)
 

@@ -14,11 +14,11 @@ from human_model.report import SolveReport, SolveStatus
 from human_model.skeleton import ExternalForce
 from human_model.subject import Subject
 from lift_predictor.core.exceptions import TaskError
-from lift_predictor.core.parameters import JOINTS
 from lift_predictor.core.predictor import LiftPredictor, PredictorOptions
-from lift_predictor.core.solver import LiftSolver, Start
-from lift_predictor.core.task import Box, build_task
-from lift_predictor.core.verify import TOLERANCE
+from lift_predictor.core.sagittal.parameters import JOINTS
+from lift_predictor.core.sagittal.task import Box, build_task
+from lift_predictor.core.sagittal.verify import TOLERANCE
+from lift_predictor.core.solvers.ipopt import LiftSolver, Start
 
 MASSES = (0.0, 7.0, 12.0)
 

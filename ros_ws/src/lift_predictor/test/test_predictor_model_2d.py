@@ -13,12 +13,12 @@ from human_model.named_subjects import named_parameters, named_subject
 from human_model.skeleton import ExternalForce
 from human_model.strength import JointStrength, coefficient_sets
 from human_model.subject import Subject
-from lift_predictor.core.evaluation import SagittalLoads, evaluate
 from lift_predictor.core.exceptions import TaskError
-from lift_predictor.core.kinematics import chain_positions, pelvis_motion
-from lift_predictor.core.node_functions import CENTRES, NODE_ROWS, node_functions
-from lift_predictor.core.parameters import JOINTS, LiftParameters
-from lift_predictor.core.person import Person
+from lift_predictor.core.sagittal.evaluation import SagittalLoads, evaluate
+from lift_predictor.core.sagittal.kinematics import chain_positions, pelvis_motion
+from lift_predictor.core.sagittal.node_functions import CENTRES, NODE_ROWS, node_functions
+from lift_predictor.core.sagittal.parameters import JOINTS, LiftParameters
+from lift_predictor.core.sagittal.person import Person
 
 N = 12
 FUNCTIONS = node_functions()

@@ -7,10 +7,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from lift_predictor.core.evaluation import evaluate, sample
-from lift_predictor.core.nlp import HAND_SCALE, Grid, LiftBounds, programme_functions
-from lift_predictor.core.node_functions import NODE_ROWS
-from lift_predictor.core.parameters import LiftParameters
+from lift_predictor.core.sagittal.evaluation import evaluate, sample
+from lift_predictor.core.sagittal.nlp import HAND_SCALE, Grid, LiftBounds, programme_functions
+from lift_predictor.core.sagittal.node_functions import NODE_ROWS
+from lift_predictor.core.sagittal.parameters import LiftParameters
 
 GRID = Grid(6, 7)
 FUNCTIONS = {function.name(): function for function in programme_functions(GRID)}

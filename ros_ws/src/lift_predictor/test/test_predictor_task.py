@@ -11,9 +11,9 @@ import pytest
 
 from human_model.motion import Lift
 from lift_predictor.core.exceptions import AsymmetricLiftError, TaskError, UnreachableError
-from lift_predictor.core.kinematics import chain_positions, reach
-from lift_predictor.core.parameters import JOINTS
-from lift_predictor.core.task import POSTURE_TOLERANCE, Box, build_task
+from lift_predictor.core.sagittal.kinematics import chain_positions, reach
+from lift_predictor.core.sagittal.parameters import JOINTS
+from lift_predictor.core.sagittal.task import POSTURE_TOLERANCE, Box, build_task
 
 BOX = Box(mass=7.0, depth=0.238)
 

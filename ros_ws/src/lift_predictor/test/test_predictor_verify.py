@@ -9,8 +9,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from lift_predictor.core.task import build_task
-from lift_predictor.core.verify import DENSITY, verify
+from lift_predictor.core.sagittal.task import build_task
+from lift_predictor.core.sagittal.verify import DENSITY, verify
 
 
 @pytest.fixture(scope='module')

@@ -16,7 +16,7 @@ from human_model.errors import HumanModelError
 from human_model.report import SolveStatus
 from injury_monitor.core.alarm import AlarmState
 from lift_predictor.core.exceptions import LiftPredictorError
-from lift_predictor.core.person import Person
+from lift_predictor.core.sagittal.person import Person
 from lifting_bringup import __version__
 from lifting_bringup import results_curves as curves
 from lifting_bringup.report.assessed import lifting_from_assessment, risk_from_assessment

@@ -12,8 +12,8 @@ import numpy.typing as npt
 from human_model.errors import HumanModelError
 from human_model.motion import BodyMotion
 from lift_predictor.core.exceptions import LiftPredictorError
-from lift_predictor.core.person import Person
-from lift_predictor.core.sagittal import SagittalPlane, sagittal_motion
+from lift_predictor.core.sagittal.person import Person
+from lift_predictor.core.sagittal.plane import SagittalPlane, sagittal_motion
 from lifting_bringup.report.data import (
     Activations,
     BodyPoints,

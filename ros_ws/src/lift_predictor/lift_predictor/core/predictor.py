@@ -16,18 +16,18 @@ from human_model.errors import HumanModelError
 from human_model.motion import Lift
 from human_model.report import SolveReport, SolveStatus
 from human_model.subject import Subject
-from lift_predictor.core.comparison import LiftComparison, compare
-from lift_predictor.core.compiled import Programme, build_programme
-from lift_predictor.core.evaluation import evaluate, sample
 from lift_predictor.core.exceptions import TaskError, UnreachableError
-from lift_predictor.core.lift_motion import body_motion, mtp_torque, sample_times
-from lift_predictor.core.nlp import Grid
-from lift_predictor.core.person import COEFFICIENT_SET, Person
-from lift_predictor.core.prediction import TORQUE_NAMES, PredictedLift2D
-from lift_predictor.core.solver import LiftSolver, Optimum, Progress
-from lift_predictor.core.starts import make_starts
-from lift_predictor.core.task import POSTURE_TOLERANCE, Box, LiftTask2D, build_task
-from lift_predictor.core.verify import Verification, verify
+from lift_predictor.core.sagittal.comparison import LiftComparison, compare
+from lift_predictor.core.sagittal.evaluation import evaluate, sample
+from lift_predictor.core.sagittal.lift_motion import body_motion, mtp_torque, sample_times
+from lift_predictor.core.sagittal.nlp import Grid
+from lift_predictor.core.sagittal.person import COEFFICIENT_SET, Person
+from lift_predictor.core.sagittal.prediction import TORQUE_NAMES, PredictedLift2D
+from lift_predictor.core.sagittal.starts import make_starts
+from lift_predictor.core.sagittal.task import POSTURE_TOLERANCE, Box, LiftTask2D, build_task
+from lift_predictor.core.sagittal.verify import Verification, verify
+from lift_predictor.core.solvers.compiled import Programme, build_programme
+from lift_predictor.core.solvers.ipopt import LiftSolver, Optimum, Progress
 
 Array = NDArray[np.float64]
 

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from human_model.frames import matrix_from_quaternion, quaternion_from_matrix
 from human_model.motion import POINTS, BodyMotion
-from lift_predictor.core.evaluation import SagittalLoads
-from lift_predictor.core.kinematics import pelvis_motion
-from lift_predictor.core.parameters import JOINTS
-from lift_predictor.core.task import LiftTask2D
+from lift_predictor.core.sagittal.evaluation import SagittalLoads
+from lift_predictor.core.sagittal.kinematics import pelvis_motion
+from lift_predictor.core.sagittal.parameters import JOINTS
+from lift_predictor.core.sagittal.task import LiftTask2D
 
 Array = NDArray[np.float64]
 

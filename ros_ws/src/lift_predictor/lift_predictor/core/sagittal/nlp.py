@@ -20,8 +20,13 @@ from numpy.typing import NDArray
 
 from lift_predictor.core.bspline import RestToRestSpline, simpson_weights
 from lift_predictor.core.exceptions import SplineError
-from lift_predictor.core.node_functions import N_NODE, NODE_ROWS, NODE_UPPER, node_functions
-from lift_predictor.core.parameters import JOINTS, N_JOINTS, N_PARAMETERS, SHAPES
+from lift_predictor.core.sagittal.node_functions import (
+    N_NODE,
+    NODE_ROWS,
+    NODE_UPPER,
+    node_functions,
+)
+from lift_predictor.core.sagittal.parameters import JOINTS, N_JOINTS, N_PARAMETERS, SHAPES
 
 Array = NDArray[np.float64]
 

@@ -9,7 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lift_predictor.core.parameters import BODIES, CIRCLE_BODIES, CIRCLES_PER_BODY, LiftParameters
+from lift_predictor.core.sagittal.parameters import (
+    BODIES,
+    CIRCLE_BODIES,
+    CIRCLES_PER_BODY,
+    LiftParameters,
+)
 
 Array = NDArray[np.float64]
 

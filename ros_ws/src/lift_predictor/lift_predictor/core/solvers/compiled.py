@@ -25,9 +25,15 @@ from typing import Any, Final
 
 import casadi as ca
 
-from lift_predictor.core.nlp import Grid, programme_functions
+from lift_predictor.core.sagittal.nlp import Grid, programme_functions
 
-SOURCES: Final = ('bspline.py', 'model_2d.py', 'nlp.py', 'node_functions.py', 'parameters.py')
+SOURCES: Final = (
+    'bspline.py',
+    'sagittal/model.py',
+    'sagittal/nlp.py',
+    'sagittal/node_functions.py',
+    'sagittal/parameters.py',
+)
 FLAGS: Final = ('-O1', '-fPIC', '-shared')
 """With -O2 the compiler takes twice as long for functions that are no faster."""
 COMPILE_TIMEOUT: Final = 300.0
@@ -106,7 +112,7 @@ def content_hash(grid: Grid, compiler: str) -> str:
     """Hash of everything that decides what a compiled library holds."""
     digest = hashlib.sha256()
     for name in SOURCES:
-        digest.update((Path(__file__).parent / name).read_bytes())
+        digest.update((Path(__file__).parents[1] / name).read_bytes())
     facts = (grid, ca.CasadiMeta.version(), platform.machine(), _version(compiler), FLAGS)
     digest.update(repr(facts).encode())
     return digest.hexdigest()[:24]

@@ -10,9 +10,9 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from lift_predictor.core.evaluation import SagittalLoads, evaluate
-from lift_predictor.core.parameters import JOINTS
-from lift_predictor.core.task import LiftTask2D
+from lift_predictor.core.sagittal.evaluation import SagittalLoads, evaluate
+from lift_predictor.core.sagittal.parameters import JOINTS
+from lift_predictor.core.sagittal.task import LiftTask2D
 
 Array = NDArray[np.float64]
 

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from human_model.motion import Lift
 from human_model.report import SolveReport
-from lift_predictor.core.parameters import JOINTS
-from lift_predictor.core.solver import Optimum
-from lift_predictor.core.verify import Verification
+from lift_predictor.core.sagittal.parameters import JOINTS
+from lift_predictor.core.sagittal.verify import Verification
+from lift_predictor.core.solvers.ipopt import Optimum
 
 Array = NDArray[np.float64]
 

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lift_predictor.core.bspline import RestToRestSpline
-from lift_predictor.core.node_functions import CENTRES, REPORT_OUTPUTS
-from lift_predictor.core.parameters import LiftParameters
+from lift_predictor.core.sagittal.node_functions import CENTRES, REPORT_OUTPUTS
+from lift_predictor.core.sagittal.parameters import LiftParameters
 
 Array = NDArray[np.float64]
 

@@ -18,7 +18,7 @@ from human_model.skeleton_2d import Skeleton2D
 from human_model.strength import JointStrength
 from human_model.subject import Subject
 from lift_predictor.core.exceptions import TaskError
-from lift_predictor.core.parameters import (
+from lift_predictor.core.sagittal.parameters import (
     BODIES,
     CIRCLE_BODIES,
     CIRCLES_PER_BODY,

@@ -13,9 +13,9 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from lift_predictor.core.compiled import Programme
-from lift_predictor.core.nlp import LiftBounds
-from lift_predictor.core.parameters import JOINTS
+from lift_predictor.core.sagittal.nlp import LiftBounds
+from lift_predictor.core.sagittal.parameters import JOINTS
+from lift_predictor.core.solvers.compiled import Programme
 
 Array = NDArray[np.float64]
 

@@ -15,7 +15,7 @@ from typing import Any
 
 import casadi as ca
 
-from lift_predictor.core.parameters import BODIES, CIRCLE_BODIES, CIRCLES_PER_BODY, unpack
+from lift_predictor.core.sagittal.parameters import BODIES, CIRCLE_BODIES, CIRCLES_PER_BODY, unpack
 
 
 @dataclass(frozen=True)

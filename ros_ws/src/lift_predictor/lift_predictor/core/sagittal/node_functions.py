@@ -8,8 +8,8 @@ from typing import Any, Final
 
 import casadi as ca
 
-from lift_predictor.core.model_2d import chain_state, torque_limits
-from lift_predictor.core.parameters import (
+from lift_predictor.core.sagittal.model import chain_state, torque_limits
+from lift_predictor.core.sagittal.parameters import (
     BODIES,
     CIRCLE_BODIES,
     CIRCLES_PER_BODY,

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lift_predictor.core.bspline import RestToRestSpline
-from lift_predictor.core.kinematics import chain_positions, reach
-from lift_predictor.core.solver import Start
-from lift_predictor.core.task import LiftTask2D
+from lift_predictor.core.sagittal.kinematics import chain_positions, reach
+from lift_predictor.core.sagittal.task import LiftTask2D
+from lift_predictor.core.solvers.ipopt import Start
 
 Array = NDArray[np.float64]
 
