@@ -72,7 +72,10 @@ def squats(squats_files, bags, tracked, tmp_path_factory):
         for lift in found.lifts
     ]
     whole = analyzer.analyze(recording(found), '', 'measured')
-    return SimpleNamespace(found=found, analyses=analyses, whole=whole, files=squats_files)
+    live = [analyzer.analyze(frame.motion) for frame in found.frames]
+    return SimpleNamespace(
+        found=found, analyses=analyses, whole=whole, live=live, files=squats_files
+    )
 
 
 def test_mass_is_that_of_the_plates_as_in_the_reference(squats):
@@ -95,7 +98,9 @@ def test_markers_fit(squats):
 
 
 def test_hands_feet_and_trunk_after_the_transfer(squats):
-    for analysis in squats.analyses:
+    """In the squats, in the whole recording and in every live frame, the first ones included."""
+    assert len(squats.live) == len(squats.found.frames)
+    for analysis in (*squats.analyses, squats.whole, *squats.live):
         assert analysis.hand_distance.max() <= DISTANCE_LIMIT
         assert analysis.foot_distance.max() <= DISTANCE_LIMIT
         for angle in (analysis.trunk_angle, analysis.hand_angle, analysis.foot_angle):

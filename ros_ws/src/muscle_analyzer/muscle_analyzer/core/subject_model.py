@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from muscle_analyzer.core.body_points import BodyPoints, attach_points, scale_factors
+from muscle_analyzer.core.coordinate_ranges import with_published_ranges
 from muscle_analyzer.core.exceptions import ModelFileError
 from muscle_analyzer.core.kinematics import body_jacobians, forward_kinematics
 from muscle_analyzer.core.multibody import MultibodyModel, compile_model
@@ -100,5 +101,9 @@ def subject_model(
         If points are missing or factors are not positive.
     """
     factors = scale_factors(compile_model(generic), points, lengths)
-    scaled = compile_model(scale_model(generic, factors, mass, default_path_lengths, strength))
+    scaled = compile_model(
+        with_published_ranges(
+            scale_model(generic, factors, mass, default_path_lengths, strength)
+        )
+    )
     return SubjectModel(scaled, attach_points(scaled, points), factors)
