@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -27,7 +28,7 @@ from lift_predictor.core.sagittal.starts import make_starts
 from lift_predictor.core.sagittal.task import POSTURE_TOLERANCE, Box, LiftTask2D, build_task
 from lift_predictor.core.sagittal.verify import Verification, verify
 from lift_predictor.core.solvers.compiled import Programme, build_programme
-from lift_predictor.core.solvers.ipopt import LiftSolver, Optimum, Progress
+from lift_predictor.core.solvers.ipopt import LiftSolver, Optimum, Progress, Start
 
 Array = NDArray[np.float64]
 
@@ -145,13 +146,31 @@ class LiftPredictor:
             )
             report = SolveReport(status, str(error), build_time=time.perf_counter() - begin)
             return PredictedLift2D.failed(lift.lift_id, box.mass, duration, report), None
-        return self._solve(task, begin, progress)
+        return self._solve(task, begin, make_starts(task, self.programme.grid.spline), progress)
+
+    def solve_task(
+        self, task: LiftTask2D, starts: Sequence[Start], progress: Progress | None = None
+    ) -> PredictedLift2D:
+        """Solve a task that was built already, from given starts; planned lifts come this way.
+
+        Parameters
+        ----------
+        task : LiftTask2D
+            Person, box, feet and what is demanded of the motion.
+        starts : sequence of Start
+            Initial guesses, the most promising first.
+        progress : callable, optional
+            Told after each start; what it raises ends the work between two starts.
+        """
+        return self._solve(task, time.perf_counter(), starts, progress)[0]
 
     def _solve(
-        self, task: LiftTask2D, begin: float, progress: Progress | None
+        self,
+        task: LiftTask2D,
+        begin: float,
+        starts: Sequence[Start],
+        progress: Progress | None,
     ) -> tuple[PredictedLift2D, LiftComparison | None]:
-        grid = self.programme.grid
-        starts = make_starts(task, grid.spline)
         build_time = time.perf_counter() - begin
         deadline = begin + self.options.time_limit
         vector = task.parameters.pack()
@@ -207,7 +226,7 @@ class LiftPredictor:
         optima: tuple[Optimum, ...],
         check: Verification | None,
         notes: tuple[str, ...],
-    ) -> tuple[PredictedLift2D, LiftComparison]:
+    ) -> tuple[PredictedLift2D, LiftComparison | None]:
         parameters = task.parameters
         function = self.programme.functions['report']
         times = sample_times(parameters.duration)
@@ -240,8 +259,9 @@ class LiftPredictor:
             verification=check,
             notes=notes,
         )
-        comparison = compare(function, task, times, q, loads, optima[0].objective)
-        return predicted, comparison
+        if task.measured is None:
+            return predicted, None
+        return predicted, compare(function, task, times, q, loads, optima[0].objective)
 
 
 def _require_good(lift: Lift) -> None:

@@ -10,6 +10,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from lift_predictor.core.exceptions import TaskError
 from lift_predictor.core.sagittal.evaluation import SagittalLoads, evaluate
 from lift_predictor.core.sagittal.parameters import JOINTS
 from lift_predictor.core.sagittal.task import LiftTask2D
@@ -79,8 +80,15 @@ def compare(
         At the same samples.
     predicted_effort : float
         Objective of the prediction [s].
+
+    Raises
+    ------
+    TaskError
+        A planned lift.
     """
     recorded = task.measured
+    if recorded is None:
+        raise TaskError(f'{task.lift_id}: nothing was recorded to compare with')
     loads = evaluate(report, recorded.q, recorded.dq, recorded.ddq, task.parameters)
 
     def at_recorded(values: Array) -> Array:

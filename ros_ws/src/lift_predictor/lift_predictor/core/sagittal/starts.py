@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from lift_predictor.core.bspline import RestToRestSpline
 from lift_predictor.core.sagittal.kinematics import chain_positions, reach
+from lift_predictor.core.sagittal.plane import SagittalMotion
 from lift_predictor.core.sagittal.task import LiftTask2D
 from lift_predictor.core.solvers.ipopt import Start
 
@@ -23,14 +24,12 @@ _ARC_POSTURES: Final = 9
 def make_starts(task: LiftTask2D, spline: RestToRestSpline) -> tuple[Start, ...]:
     """Return the recorded lift, a smooth step, and an arc clear of the body, as control values.
 
-    All begin and end with the postures that reach the box.
+    All begin and end with the postures that reach the box. Without a recording (a planned lift)
+    the first is left out.
     """
     s = np.linspace(0.0, 1.0, _DENSE)
     step = smooth_step(s)[:, None]
     first, last = task.ends
-
-    recorded = _resampled(task, s)
-    recorded = recorded + (1.0 - step) * (first - recorded[0]) + step * (last - recorded[-1])
 
     plain = first + step * (last - first)
     middle = np.clip(
@@ -38,11 +37,15 @@ def make_starts(task: LiftTask2D, spline: RestToRestSpline) -> tuple[Start, ...]
     )
     bump = (16.0 * s**2 * (1.0 - s) ** 2)[:, None]
     through_middle = plain + bump * (middle - plain[_DENSE // 2])
-    return (
-        Start('recorded motion', spline.fit(s, recorded)),
+    made_up = (
         Start('smooth step', spline.fit(s, through_middle)),
         Start('clearance arc', _arc(task, spline, s, through_middle)),
     )
+    if task.measured is None:
+        return made_up
+    recorded = _resampled(task.measured, task.parameters.duration, s)
+    recorded = recorded + (1.0 - step) * (first - recorded[0]) + step * (last - recorded[-1])
+    return (Start('recorded motion', spline.fit(s, recorded)), *made_up)
 
 
 def smooth_step(s: Array) -> Array:
@@ -50,9 +53,8 @@ def smooth_step(s: Array) -> Array:
     return np.asarray(10.0 * s**3 - 15.0 * s**4 + 6.0 * s**5)
 
 
-def _resampled(task: LiftTask2D, s: Array) -> Array:
-    time = task.measured.time / task.parameters.duration
-    return np.stack([np.interp(s, time, column) for column in task.measured.q.T], axis=1)
+def _resampled(measured: SagittalMotion, duration: float, s: Array) -> Array:
+    return np.stack([np.interp(s, measured.time / duration, c) for c in measured.q.T], axis=1)
 
 
 def _arc(task: LiftTask2D, spline: RestToRestSpline, s: Array, guide: Array) -> Array:

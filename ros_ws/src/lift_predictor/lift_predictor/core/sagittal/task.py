@@ -69,8 +69,8 @@ class LiftTask2D:
         Who lifts.
     plane : SagittalPlane
         Where in the laboratory.
-    measured : SagittalMotion
-        The recorded lift seen from the side.
+    measured : SagittalMotion or None
+        The recorded lift seen from the side; None: the lift is planned, nothing was recorded.
     parameters : LiftParameters
         Numbers of person and task.
     bounds : LiftBounds
@@ -85,7 +85,7 @@ class LiftTask2D:
     start: float
     person: Person
     plane: SagittalPlane
-    measured: SagittalMotion
+    measured: SagittalMotion | None
     parameters: LiftParameters
     bounds: LiftBounds
     ends: Array
@@ -146,7 +146,7 @@ def build_task(
     for row, place in enumerate((box.start, box.end)):
         if place is not None:
             hand[row] = plane.into(np.asarray(place, dtype=float)) - from_hand
-    bounds = _bounds(person, postures, posture_tolerance, hand)
+    bounds = _bounds(person, postures, posture_tolerance, hand, box.mass)
     ends = _reachable_ends(bounds, postures, parameters)
     return LiftTask2D(
         lift.lift_id, lift.start, person, plane, measured, parameters, bounds, ends, notes
@@ -238,7 +238,9 @@ def _fit_circles(
     return replace(parameters, circle=circle), (note,)
 
 
-def _bounds(person: Person, postures: Array, tolerance: float, hand: Array) -> LiftBounds:
+def _bounds(
+    person: Person, postures: Array, tolerance: float, hand: Array, mass: float
+) -> LiftBounds:
     lower = np.maximum(postures - tolerance, person.angle_lower)
     upper = np.minimum(postures + tolerance, person.angle_upper)
     for row, when in enumerate(INSTANTS):
@@ -250,7 +252,9 @@ def _bounds(person: Person, postures: Array, tolerance: float, hand: Array) -> L
                     f'deg is outside its limits of {np.degrees(low):.1f} to '
                     f'{np.degrees(high):.1f} deg'
                 )
-    return LiftBounds(person.angle_lower, person.angle_upper, lower, upper, hand)
+    return LiftBounds(
+        person.angle_lower, person.angle_upper, lower, upper, hand, np.array([mass, mass])
+    )
 
 
 def _reachable_ends(bounds: LiftBounds, postures: Array, parameters: LiftParameters) -> Array:
