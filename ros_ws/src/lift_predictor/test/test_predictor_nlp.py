@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -13,6 +15,7 @@ from lift_predictor.core.sagittal.node_functions import NODE_ROWS
 from lift_predictor.core.sagittal.parameters import LiftParameters
 
 GRID = Grid(6, 7)
+MASS = np.array([7.0, 30.0])
 FUNCTIONS = {function.name(): function for function in programme_functions(GRID)}
 
 
@@ -20,12 +23,13 @@ FUNCTIONS = {function.name(): function for function in programme_functions(GRID)
 def point() -> np.ndarray:
     rng = np.random.default_rng(11)
     low, high = np.radians([-60, 0, 10, 10, 10, -10]), np.radians([10, 90, 90, 90, 90, 25])
-    return rng.uniform(low, high, (GRID.spline.n_free, 6)).ravel()
+    return np.append(rng.uniform(low, high, (GRID.spline.n_free, 6)), 7.0)
 
 
-@pytest.fixture(scope='module')
-def vector(parameters: LiftParameters) -> np.ndarray:
-    return parameters.pack()
+@pytest.fixture(scope='module', params=[(1.0, 0.0), (0.3, 0.9), (0.0, 1.0)])
+def vector(request, parameters: LiftParameters) -> np.ndarray:
+    """Person and task with factors a, b of the objective."""
+    return replace(parameters, objective=np.array(request.param)).pack()
 
 
 def dense(value) -> np.ndarray:
@@ -76,7 +80,7 @@ def test_hessian(point: np.ndarray, vector: np.ndarray) -> None:
 def test_rows_and_objective_are_those_of_the_model(
     point: np.ndarray, vector: np.ndarray, parameters: LiftParameters
 ) -> None:
-    control = point.reshape(GRID.spline.n_free, 6)
+    control = point[: GRID.n_angles].reshape(GRID.spline.n_free, 6)
     q, dq, ddq = sample(GRID.spline, control, GRID.times, parameters.duration)
     loads = evaluate(FUNCTIONS['report'], q, dq, ddq, parameters)
     g = dense(FUNCTIONS['nlp_g'](point, vector))[:, 0]
@@ -88,13 +92,15 @@ def test_rows_and_objective_are_those_of_the_model(
     np.testing.assert_allclose(g[-6:], q[GRID.n_nodes // 2], atol=1e-12)
     simpson = np.array([1, 4, 2, 4, 2, 4, 1]) / 18.0
     effort = parameters.duration * simpson @ loads.effort
-    assert float(FUNCTIONS['nlp_f'](point, vector)) == pytest.approx(effort, rel=1e-12)
+    a, b = vector[-2:]
+    objective = a * effort - b * np.log(7.0 * parameters.gravity + 10.0)
+    assert float(FUNCTIONS['nlp_f'](point, vector)) == pytest.approx(objective, rel=1e-12)
 
 
 def test_bounds_have_the_order_of_the_row_names() -> None:
     angle = np.arange(6.0)
     posture = np.stack([angle - 0.1, angle, angle + 0.1])
-    bounds = LiftBounds(-angle - 1, angle + 1, posture - 1, posture + 1, np.ones((2, 2)))
+    bounds = LiftBounds(-angle - 1, angle + 1, posture - 1, posture + 1, np.ones((2, 2)), MASS)
     lower, upper = bounds.rows(GRID)
     assert len(lower) == len(upper) == len(GRID.row_names)
     at = GRID.row_names.index('posture (4.8) of hip_flexion at 50 % of the lift')
@@ -105,6 +111,10 @@ def test_bounds_have_the_order_of_the_row_names() -> None:
     assert (lower[at], upper[at]) == (0.0, 1.0)
     at = GRID.row_names.index('joint angle limit (4.1) of ankle_angle at 100 % of the lift')
     assert (lower[at], upper[at]) == (-6.0, 6.0)
+    lower, upper = bounds.variables(GRID)
+    assert len(lower) == len(upper) == GRID.n_variables
+    assert (lower[-1], upper[-1]) == (7.0, 30.0)
+    assert (lower[1], upper[1]) == pytest.approx((-0.1, 1.9))
 
 
 def test_margin_tightens_node_rows() -> None:
@@ -112,7 +122,7 @@ def test_margin_tightens_node_rows() -> None:
     posture = np.zeros((3, 6))
     margin = np.zeros((2, GRID.n_nodes, len(NODE_ROWS) + 6))
     margin[0, 2, 1], margin[1, 2, 1], margin[1, 0, -1] = 0.1, 0.2, 0.3
-    bounds = LiftBounds(-angle, angle, posture - 1, posture + 1, np.ones((2, 2)), margin)
+    bounds = LiftBounds(-angle, angle, posture - 1, posture + 1, np.ones((2, 2)), MASS, margin)
     lower, upper = bounds.rows(GRID)
     row = 2 * len(NODE_ROWS) + 1
     assert (lower[row], upper[row]) == (0.1, 0.8)

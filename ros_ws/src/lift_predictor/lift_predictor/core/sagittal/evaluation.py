@@ -62,10 +62,10 @@ def evaluate(
     q, dq, ddq : array, shape (n, 6)
         Joint coordinates [rad], [rad/s], [rad/s^2].
     parameters : LiftParameters
-        Person and task.
+        Person, task and the mass in the hands.
     """
     n = len(q)
-    outputs = report.map(n)(q.T, dq.T, ddq.T, parameters.pack())
+    outputs = report.map(n)(q.T, dq.T, ddq.T, parameters.box_mass, parameters.pack())
     values = {
         name: np.asarray(output).reshape(-1, n).T
         for name, output in zip(REPORT_OUTPUTS, outputs, strict=True)

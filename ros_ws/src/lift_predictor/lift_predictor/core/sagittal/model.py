@@ -32,13 +32,15 @@ class ChainState:
     clearance: Any
 
 
-def chain_state(q: Any, dq: Any, ddq: Any, p: Any) -> ChainState:
+def chain_state(q: Any, dq: Any, ddq: Any, s: Any, p: Any) -> ChainState:
     """Kinematics from the ankle to the grip and Newton-Euler dynamics back down.
 
     Parameters
     ----------
     q, dq, ddq : SX, 6 x 1
         Joint coordinates of `parameters.JOINTS` [rad], [rad/s], [rad/s^2].
+    s : SX, 1 x 1
+        Mass in the hands [kg].
     p : SX
         Vector of `LiftParameters.pack`.
 
@@ -99,7 +101,7 @@ def chain_state(q: Any, dq: Any, ddq: Any, p: Any) -> ChainState:
     up = ca.vertcat(0.0, 1.0)
     # The box is a point mass at the grip: it is carried level, and its weight and inertia act at
     # the hands during the whole lift.
-    hand_force = -blocks['box_mass'][0][0] * (acceleration['hand'] + gravity * up)
+    hand_force = -s[0] * (acceleration['hand'] + gravity * up)
     force = -hand_force
     moment = _cross(position['hand'], force)
     load = {}

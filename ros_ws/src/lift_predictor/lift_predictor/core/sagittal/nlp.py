@@ -2,6 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The lift as a nonlinear programme (equations 2.10 to 2.12 and 4.1 to 4.8).
 
+The variables are the free control values of the angles and the mass of the box; the objective is
+a effort - b log(W + 10). With equal bounds on the mass it is the lift of a given weight.
+
 The node functions are mapped over uniform time nodes and gathered into the programme by the
 constant matrices of the spline: gradient, Jacobian and Hessian are products of small dense blocks
 with them. Person and task are parameters, so that the functions depend on the numbers of control
@@ -26,10 +29,19 @@ from lift_predictor.core.sagittal.node_functions import (
     NODE_UPPER,
     node_functions,
 )
-from lift_predictor.core.sagittal.parameters import JOINTS, N_JOINTS, N_PARAMETERS, SHAPES
+from lift_predictor.core.sagittal.parameters import (
+    JOINTS,
+    N_JOINTS,
+    N_PARAMETERS,
+    N_SCALARS,
+    SHAPES,
+)
 
 Array = NDArray[np.float64]
 
+
+WEIGHT_OFFSET: Final = 10.0
+"""Added to the box's weight in the logarithm of equation 2.11 [N]."""
 
 HAND_SCALE: Final = 0.01
 """Unit of the hand position rows [m]: where no motion is feasible, IPOPT ends at the least sum of
@@ -74,7 +86,12 @@ class Grid:
 
     @property
     def n_variables(self) -> int:
-        """Optimisation variables: free control values, all joints of one point together."""
+        """Optimisation variables: `n_angles` control values, then the box's mass [kg]."""
+        return self.n_angles + N_SCALARS
+
+    @property
+    def n_angles(self) -> int:
+        """Free control values, all joints of one point together."""
         return self.spline.n_free * N_JOINTS
 
     @property
@@ -111,6 +128,8 @@ class LiftBounds:
         free.
     hand : array, shape (2, 2)
         Grip (forward, up) at start and end (equation 4.6) [m].
+    box_mass : array, shape (2,)
+        Lower and upper bound of the box's mass [kg]; equal: a given weight.
     margin : array, shape (2, n_nodes, n_rows + 6), optional
         Distance to keep from the lower and upper bounds of the node rows and joint angles, where
         a solution was found to leave them between the nodes; none if omitted.
@@ -121,15 +140,16 @@ class LiftBounds:
     posture_lower: Array
     posture_upper: Array
     hand: Array
+    box_mass: Array
     margin: Array | None = None
 
     def variables(self, grid: Grid) -> tuple[Array, Array]:
-        """Bounds of the variables: the postures at both ends, which are control points."""
+        """Bounds of the variables: postures at both ends, which are control points, and mass."""
         lower = np.full((grid.spline.n_free, N_JOINTS), -np.inf)
         upper = -lower
         lower[0], upper[0] = self.posture_lower[0], self.posture_upper[0]
         lower[-1], upper[-1] = self.posture_lower[2], self.posture_upper[2]
-        return lower.ravel(), upper.ravel()
+        return np.append(lower, self.box_mass[0]), np.append(upper, self.box_mass[1])
 
     def rows(self, grid: Grid) -> tuple[Array, Array]:
         """Bounds of the constraint rows, in the order of `Grid.row_names`."""
@@ -164,45 +184,51 @@ def programme_functions(grid: Grid) -> list[Any]:
         `nlp_grad`, `report`.
     """
     node = node_functions()
-    n = grid.n_nodes
+    n, n_angles = grid.n_nodes, grid.n_angles
     x = ca.MX.sym('x', grid.n_variables)
     p = ca.MX.sym('p', N_PARAMETERS)
     lam_f = ca.MX.sym('lam_f')
     lam_g = ca.MX.sym('lam_g', len(grid.row_names))
     duration = p[_offset('duration')]
+    effort_factor = p[_offset('objective')] * duration
     weights = ca.DM(simpson_weights(n))
+    heaviness, d_heaviness, dd_heaviness = _heaviness(x[-1], p)
 
     gather = _gather(grid)
-    z = ca.reshape(ca.mtimes(gather, x), N_NODE, n)
+    z = ca.reshape(ca.mtimes(gather, x), N_NODE + N_SCALARS, n)[:N_NODE, :]
+    s = x[-1]
     angles, middle = _linear_rows(grid)
-    q_ends = (x[:N_JOINTS], x[-N_JOINTS:])
+    q_ends = (x[:N_JOINTS], x[n_angles - N_JOINTS : n_angles])
 
     def stack(rows: Any, hands: list[Any]) -> Any:
         return ca.vertcat(ca.vec(rows), ca.mtimes(angles, x), *hands, ca.mtimes(middle, x))
 
-    effort, rows = node['node'].map(n)(z, p)
-    f = duration * ca.dot(weights, effort.T)
+    effort, rows = node['node'].map(n)(z, s, p)
+    f = effort_factor * ca.dot(weights, effort.T) - heaviness
     g = stack(rows, [node['hand'](q, p) / HAND_SCALE for q in q_ends])
 
-    effort_j, rows_j, d_effort, d_rows = node['node_jac'].map(n)(z, p)
-    f_j = duration * ca.dot(weights, effort_j.T)
-    grad_f = duration * ca.mtimes(gather.T, ca.vec(d_effort * ca.repmat(weights.T, N_NODE, 1)))
-    blocks = ca.diagcat(*ca.horzsplit(d_rows, N_NODE))
+    effort_j, rows_j, d_effort, d_rows = node['node_jac'].map(n)(z, s, p)
+    f_j = effort_factor * ca.dot(weights, effort_j.T) - heaviness
+    weighted = d_effort * ca.repmat(weights.T, N_NODE + N_SCALARS, 1)
+    by_mass = ca.vertcat(ca.DM(n_angles, 1), d_heaviness)
+    grad_f = effort_factor * ca.mtimes(gather.T, ca.vec(weighted)) - by_mass
+    blocks = ca.diagcat(*ca.horzsplit(d_rows, N_NODE + N_SCALARS))
     hand_values, hand_rows = [], []
-    for end, q in enumerate(q_ends):
+    for q, first in zip(q_ends, (0, n_angles - N_JOINTS), strict=True):
         value, slope = node['hand_jac'](q, p)
         hand_values.append(value / HAND_SCALE)
-        before = ca.DM(2, 0 if end == 0 else grid.n_variables - N_JOINTS)
-        after = ca.DM(2, grid.n_variables - N_JOINTS if end == 0 else 0)
+        before = ca.DM(2, first)
+        after = ca.DM(2, grid.n_variables - N_JOINTS - first)
         hand_rows.append(ca.horzcat(before, slope / HAND_SCALE, after))
     g_j = stack(rows_j, hand_values)
     jac_g = ca.vertcat(ca.mtimes(blocks, gather), angles, *hand_rows, middle)
 
     n_rows = len(NODE_ROWS)
     node_multiplier = ca.reshape(lam_g[: n * n_rows], n_rows, n)
-    sigma = lam_f * duration * weights.T
-    hessians = node['node_hess'].map(n)(z, p, sigma, node_multiplier)
-    hess = ca.mtimes(ca.mtimes(gather.T, ca.diagcat(*ca.horzsplit(hessians, N_NODE))), gather)
+    sigma = lam_f * effort_factor * weights.T
+    hessians = node['node_hess'].map(n)(z, s, p, sigma, node_multiplier)
+    block_hess = ca.diagcat(*ca.horzsplit(hessians, N_NODE + N_SCALARS))
+    hess = ca.mtimes(ca.mtimes(gather.T, block_hess), gather)
     first_hand = n * (n_rows + N_JOINTS)
     ends = [
         node['hand_hess'](
@@ -210,8 +236,10 @@ def programme_functions(grid: Grid) -> list[Any]:
         )
         for end, q in enumerate(q_ends)
     ]
-    between = grid.n_variables - 2 * N_JOINTS
-    hess = hess + ca.diagcat(ends[0], ca.DM(between, between), ends[1])
+    between = n_angles - 2 * N_JOINTS
+    hess = hess + ca.diagcat(
+        ends[0], ca.DM(between, between), ends[1], -lam_f * dd_heaviness
+    )
 
     point = ([x, p], ['x', 'p'])
     return [
@@ -248,16 +276,32 @@ def _offset(field: str) -> int:
     raise KeyError(field)
 
 
+def _heaviness(mass: Any, p: Any) -> tuple[Any, Any, Any]:
+    """Second term of equation 2.11, b log(W + 10) with W in N, and two derivatives by the mass."""
+    gravity, factor = p[_offset('gravity')], p[_offset('objective') + 1]
+    total = gravity * mass + WEIGHT_OFFSET
+    slope = factor * gravity / total
+    return factor * ca.log(total), slope, -slope * gravity / total
+
+
 def _gather(grid: Grid) -> Any:
-    """Sparse matrix from the variables to the stacked node variables, (18 n, n_variables)."""
+    """Sparse matrix from the variables to the stacked node variables, (19 n, n_variables)."""
     basis = [grid.spline.basis(grid.times, derivative) for derivative in range(3)]
     blocks = np.stack(basis, axis=1).reshape(3 * grid.n_nodes, grid.spline.n_free)
-    return ca.sparsify(ca.DM(np.kron(blocks, np.eye(N_JOINTS))), 1e-12)
+    gather = np.zeros((grid.n_nodes, N_NODE + N_SCALARS, grid.n_variables))
+    gather[:, :N_NODE, :-N_SCALARS] = np.kron(blocks, np.eye(N_JOINTS)).reshape(
+        grid.n_nodes, N_NODE, grid.n_angles
+    )
+    gather[:, N_NODE:, -N_SCALARS:] = np.eye(N_SCALARS)
+    return ca.sparsify(ca.DM(gather.reshape(-1, grid.n_variables)), 1e-12)
 
 
 def _linear_rows(grid: Grid) -> tuple[Any, Any]:
     """Joint angles at all nodes and at half time, as matrices on the variables."""
     unit = np.eye(N_JOINTS)
-    angles = np.kron(grid.spline.basis(grid.times), unit)
-    middle = np.kron(grid.spline.basis(np.array([0.5])), unit)
-    return ca.sparsify(ca.DM(angles), 1e-12), ca.sparsify(ca.DM(middle), 1e-12)
+    rows = []
+    for times in (grid.times, np.array([0.5])):
+        by_angles = np.kron(grid.spline.basis(times), unit)
+        by_mass = np.zeros((len(by_angles), N_SCALARS))
+        rows.append(ca.sparsify(ca.DM(np.hstack((by_angles, by_mass))), 1e-12))
+    return rows[0], rows[1]

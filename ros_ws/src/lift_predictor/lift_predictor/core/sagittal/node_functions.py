@@ -16,6 +16,7 @@ from lift_predictor.core.sagittal.parameters import (
     JOINTS,
     N_JOINTS,
     N_PARAMETERS,
+    N_SCALARS,
     unpack,
 )
 
@@ -56,10 +57,10 @@ def node_functions() -> dict[str, Any]:
     Returns
     -------
     dict
-        `node(z, p)` -> effort, rows; `node_jac` adds their derivatives by z; `node_hess(z, p,
-        sigma, multiplier)` -> Hessian of sigma effort + multiplier' rows; `hand`, `hand_jac`,
-        `hand_hess` the same for the grip (q instead of z); `report(q, dq, ddq, p)` ->
-        `REPORT_OUTPUTS` in physical units.
+        `node(z, s, p)` -> effort, rows; `node_jac` adds their derivatives by (z, s);
+        `node_hess(z, s, p, sigma, multiplier)` -> Hessian of sigma effort + multiplier' rows by
+        (z, s); `hand(q, p)`, `hand_jac`, `hand_hess` the same for the grip; `report(q, dq, ddq, s,
+        p)` -> `REPORT_OUTPUTS` in physical units. s holds the box's mass [kg].
 
     Notes
     -----
@@ -70,6 +71,8 @@ def node_functions() -> dict[str, Any]:
     """
     p = ca.SX.sym('p', N_PARAMETERS)
     z = ca.SX.sym('z', N_NODE)
+    s = ca.SX.sym('s', N_SCALARS)
+    zs = ca.vertcat(z, s)
     sigma = ca.SX.sym('sigma')
     multiplier = ca.SX.sym('multiplier', len(NODE_ROWS))
     duration = unpack(p)['duration'][0][0]
@@ -77,22 +80,25 @@ def node_functions() -> dict[str, Any]:
         z[:N_JOINTS],
         z[N_JOINTS : 2 * N_JOINTS] / duration,
         z[2 * N_JOINTS :] / duration**2,
+        s,
         p,
     )
     effort, rows = instant['effort'], instant['rows']
-    gradient = ca.gradient(sigma * effort + ca.dot(multiplier, rows), z)
+    gradient = ca.gradient(sigma * effort + ca.dot(multiplier, rows), zs)
 
     q, dq, ddq = (ca.SX.sym(name, N_JOINTS) for name in ('q', 'dq', 'ddq'))
-    physical = _instant(q, dq, ddq, p)
+    physical = _instant(q, dq, ddq, s, p)
     hand = physical['centres'][-2:]
     hand_multiplier = ca.SX.sym('hand_multiplier', 2)
     return {
-        'node': ca.Function('node', [z, p], [effort, rows]),
+        'node': ca.Function('node', [z, s, p], [effort, rows]),
         'node_jac': ca.Function(
-            'node_jac', [z, p], [effort, rows, ca.gradient(effort, z), ca.jacobian(rows, z)]
+            'node_jac',
+            [z, s, p],
+            [effort, rows, ca.gradient(effort, zs), ca.jacobian(rows, zs)],
         ),
         'node_hess': ca.Function(
-            'node_hess', [z, p, sigma, multiplier], [ca.jacobian(gradient, z)]
+            'node_hess', [z, s, p, sigma, multiplier], [ca.jacobian(gradient, zs)]
         ),
         'hand': ca.Function('hand', [q, p], [hand]),
         'hand_jac': ca.Function('hand_jac', [q, p], [hand, ca.jacobian(hand, q)]),
@@ -103,19 +109,19 @@ def node_functions() -> dict[str, Any]:
         ),
         'report': ca.Function(
             'report',
-            [q, dq, ddq, p],
+            [q, dq, ddq, s, p],
             [physical[name] for name in REPORT_OUTPUTS],
-            ['q', 'dq', 'ddq', 'p'],
+            ['q', 'dq', 'ddq', 's', 'p'],
             list(REPORT_OUTPUTS),
         ),
     }
 
 
-def _instant(q: Any, dq: Any, ddq: Any, p: Any) -> dict[str, Any]:
+def _instant(q: Any, dq: Any, ddq: Any, s: Any, p: Any) -> dict[str, Any]:
     blocks = unpack(p)
-    state = chain_state(q, dq, ddq, p)
+    state = chain_state(q, dq, ddq, s, p)
     lower, upper = torque_limits(q, dq, p)
-    mass = sum(row[0] for row in blocks['body']) + blocks['box_mass'][0][0]
+    mass = sum(row[0] for row in blocks['body']) + s[0]
     rear, front = blocks['support'][0]
     scale = (front - rear) * mass * blocks['gravity'][0][0]
     vertical = state.ground_force[1]

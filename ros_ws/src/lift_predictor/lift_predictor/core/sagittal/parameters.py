@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Final
 
 import numpy as np
@@ -47,10 +47,12 @@ SHAPES: Final[dict[str, tuple[int, int]]] = {
     'ground_height': (1, 1),
     'gravity': (1, 1),
     'duration': (1, 1),
-    'box_mass': (1, 1),
     'box_radius': (1, 1),
     'box_from_hand': (1, 2),
+    'objective': (1, 2),
 }
+N_SCALARS: Final = 1
+"""Variables that hold for the whole lift: the box's mass [kg]."""
 N_PARAMETERS: Final = sum(rows * columns for rows, columns in SHAPES.values())
 
 
@@ -78,12 +80,17 @@ class LiftParameters:
         Ankle in the laboratory [m]; the feet are flat and do not move.
     support : array, shape (2,)
         Rear and front edge of the foot support region [m].
-    ground_height, gravity, duration, box_mass : float
-        [m], [m/s^2], [s], [kg].
+    ground_height, gravity, duration : float
+        [m], [m/s^2], [s].
+    box_mass : float
+        Mass in the hands [kg]; a variable of the programme, and so no part of the vector.
     box_radius : float
         Half depth of the box [m] (r2 of equation 4.5).
     box_from_hand : array, shape (2,)
         Box centre minus grip [m]; the box stays level.
+    objective : array, shape (2,)
+        Factors a and b of the objective a effort - b log(W + 10) (equation 2.11 with weights and
+        normalisation multiplied); the default is the effort alone.
     """
 
     body: Array
@@ -98,6 +105,7 @@ class LiftParameters:
     box_mass: float
     box_radius: float
     box_from_hand: Array
+    objective: Array = field(default_factory=lambda: np.array([1.0, 0.0]))
 
     def pack(self) -> Array:
         """Return the parameter vector of the compiled functions, shape (N_PARAMETERS,).

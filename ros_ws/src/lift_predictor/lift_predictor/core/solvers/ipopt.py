@@ -31,10 +31,14 @@ Progress = Callable[[int, int, float], None]
 
 @dataclass(frozen=True)
 class Start:
-    """Named initial guess: free control values, shape (n_free, 6) [rad]."""
+    """Named initial guess: free control values, shape (n_free, 6) [rad], and box mass [kg].
+
+    The mass is moved into its bounds, and so needs no value where the weight is given.
+    """
 
     name: str
     control: Array
+    box_mass: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -51,8 +55,10 @@ class Optimum:
         IPOPT's own words.
     control : array, shape (n_free, 6)
         Free control values [rad].
+    box_mass : float
+        [kg].
     objective : float
-        Effort [s].
+        a effort [s] - b log(W + 10); the effort where the weight is given.
     iterations : int
         Iterations.
     violation : float
@@ -69,6 +75,7 @@ class Optimum:
     converged: bool
     outcome: str
     control: Array
+    box_mass: float
     objective: float
     iterations: int
     violation: float
@@ -79,7 +86,7 @@ class Optimum:
 
     def as_start(self) -> Start:
         """Use the end of this run as a start."""
-        return Start(self.start, self.control)
+        return Start(self.start, self.control, self.box_mass)
 
 
 class LiftSolver:
@@ -139,7 +146,7 @@ class LiftSolver:
         grid = self.programme.grid
         lbx, ubx = bounds.variables(grid)
         lbg, ubg = bounds.rows(grid)
-        x0 = np.clip(start.control.ravel(), lbx, ubx)
+        x0 = np.clip(np.append(start.control, start.box_mass), lbx, ubx)
         result = self._ipopt(x0=x0, p=parameters, lbx=lbx, ubx=ubx, lbg=lbg, ubg=ubg)
         stats = self._ipopt.stats()
         elapsed = time.perf_counter() - begin
@@ -161,7 +168,8 @@ class LiftSolver:
             start=start.name,
             converged=bool(stats['success']) and violation <= FEASIBLE,
             outcome=str(stats['return_status']),
-            control=x.reshape(grid.spline.n_free, -1),
+            control=x[: grid.n_angles].reshape(grid.spline.n_free, -1),
+            box_mass=float(x[-1]),
             objective=float(result['f']),
             iterations=int(stats['iter_count']),
             violation=violation,
@@ -202,6 +210,8 @@ class LiftSolver:
         n = self.programme.grid.n_variables
         if index >= n:
             return self.programme.grid.row_names[index - n]
+        if index == n - 1:
+            return 'mass of the box'
         end = 'start' if index < len(JOINTS) else 'end'
         return f'posture (4.8) of {JOINTS[index % len(JOINTS)]} at the {end}'
 
