@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import signal
 import sys
 import time
@@ -13,6 +14,7 @@ from pathlib import Path
 
 from lifting_bringup.bags.exceptions import BagError
 from lifting_bringup.graph_errors import GraphError
+from lifting_bringup.node_process import discovery
 
 #: The recording that `lift demo` plays.
 DEMO_BAG = 'symmetric_12kg'
@@ -136,6 +138,7 @@ def _play(options: argparse.Namespace) -> int:
     from lifting_bringup.bags.keyboard import space_bar_pauses
     from lifting_bringup.bags.player import PlayControl, PlayOptions, play
 
+    os.environ.update(discovery())
     control = PlayControl(paused=options.start_paused)
     signal.signal(signal.SIGTERM, lambda *_: control.stop())
     signal.signal(signal.SIGINT, lambda *_: control.stop())
@@ -167,6 +170,7 @@ def _play(options: argparse.Namespace) -> int:
 def _record(options: argparse.Namespace) -> int:
     from lifting_bringup.bags.recorder import RecordControl, RecordOptions, record
 
+    os.environ.update(discovery())
     control = RecordControl()
     signal.signal(signal.SIGTERM, lambda *_: control.stop())
     signal.signal(signal.SIGINT, lambda *_: control.stop())

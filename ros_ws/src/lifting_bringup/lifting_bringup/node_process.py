@@ -16,6 +16,12 @@ from lifting_bringup.graph_errors import NodeDiedError
 #: Order of start: what computes longest before it is ready comes first.
 NODES = ('muscle_analyzer', 'lift_predictor', 'motion_tracker', 'injury_monitor')
 
+#: Profile of Fast DDS with which processes that start together find each other at once.
+DISCOVERY_PROFILE = Path(__file__).with_name('data') / 'fast_dds.xml'
+
+#: Variables that name a profile of the user's own, which goes before ours.
+PROFILE_VARIABLES = ('FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE')
+
 #: Time [s] a process has to end after SIGTERM before it is killed.
 STOP_TIMEOUT = 15.0
 
@@ -57,15 +63,27 @@ class NodeProcess:
             return self.process.wait()
 
 
+def discovery() -> dict[str, str]:
+    """Return the variables that say how nodes find each other, without those the user has set.
+
+    Discovery stays on this machine: a worker's data do not leave the station by default. All
+    processes of a graph need the same, as a node that looks farther than its partner is found
+    late. Variables count when ROS starts in a process.
+    """
+    values = {}
+    if 'ROS_AUTOMATIC_DISCOVERY_RANGE' not in os.environ:
+        values['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+    if not any(name in os.environ for name in PROFILE_VARIABLES):
+        values[PROFILE_VARIABLES[0]] = str(DISCOVERY_PROFILE)
+    return values
+
+
 def environment() -> dict[str, str]:
     """Return the environment of a node process.
 
-    Discovery stays on this machine unless the user has said otherwise: a worker's data do not
-    leave the station by default. Numerical libraries get one thread, as one frame's matrices are
-    too small to share.
+    Numerical libraries get one thread, as one frame's matrices are too small to share.
     """
-    values = dict(os.environ)
-    values.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+    values = os.environ | discovery()
     values.setdefault('OMP_NUM_THREADS', '1')
     values.setdefault('OPENBLAS_NUM_THREADS', '1')
     values['PYTHONUNBUFFERED'] = '1'

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import time
 from collections.abc import Callable
@@ -23,7 +24,7 @@ from lifting_bringup.graph import Graph
 from lifting_bringup.graph_errors import SessionError
 from lifting_bringup.live_state import FOLLOWED, LiveState
 from lifting_bringup.live_view import LiveView
-from lifting_bringup.node_process import NodeProcess, start_module
+from lifting_bringup.node_process import NodeProcess, discovery, start_module
 from lifting_node import qos
 
 #: Topics of the results file: the recording's description and everything the graph says of it.
@@ -162,6 +163,7 @@ def run_online(options: RunOptions, say: Callable[[str], None] = print) -> RunRe
     logs = options.output / 'logs'
     shutil.rmtree(options.output / 'recording', ignore_errors=True)
     options.output.mkdir(parents=True, exist_ok=True)
+    os.environ.update(discovery())
     rclpy.init()
     node = Node('lift_run', namespace=options.station)
     executor = EventsExecutor()

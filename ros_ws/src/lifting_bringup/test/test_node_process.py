@@ -1,0 +1,56 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Environment and end of the node processes; no ROS."""
+
+import xml.etree.ElementTree as ET
+
+import pytest
+
+from lifting_bringup.graph_errors import NodeDiedError
+from lifting_bringup.node_process import (
+    DISCOVERY_PROFILE,
+    PROFILE_VARIABLES,
+    discovery,
+    environment,
+    start_module,
+)
+
+
+@pytest.fixture
+def nothing_set(monkeypatch):
+    for name in ('ROS_AUTOMATIC_DISCOVERY_RANGE', *PROFILE_VARIABLES):
+        monkeypatch.delenv(name, raising=False)
+    return monkeypatch
+
+
+def test_discovery_stays_on_this_machine_and_is_quick(nothing_set):
+    assert discovery() == {
+        'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
+        'FASTRTPS_DEFAULT_PROFILES_FILE': str(DISCOVERY_PROFILE),
+    }
+    assert discovery().items() <= environment().items()
+
+
+def test_what_the_user_has_set_goes_first(nothing_set):
+    nothing_set.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'SUBNET')
+    assert list(discovery()) == ['FASTRTPS_DEFAULT_PROFILES_FILE']
+    nothing_set.setenv('FASTDDS_DEFAULT_PROFILES_FILE', '/etc/plant/dds.xml')
+    assert discovery() == {}
+    assert 'FASTRTPS_DEFAULT_PROFILES_FILE' not in environment()
+    assert environment()['ROS_AUTOMATIC_DISCOVERY_RANGE'] == 'SUBNET'
+
+
+def test_profile_announces_for_as_long_as_a_start_may_take():
+    space = {'dds': 'http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles'}
+    (quick,) = ET.parse(DISCOVERY_PROFILE).getroot().iterfind('.//dds:initialAnnouncements', space)
+    count = int(quick.findtext('dds:count', namespaces=space))
+    period = 1e-9 * int(quick.findtext('dds:period/dds:nanosec', namespaces=space))
+    assert count * period == pytest.approx(10.0)
+
+
+def test_end_of_a_process_is_told_with_its_last_words(tmp_path):
+    process = start_module('helper', 'lifting_bringup.cli', tmp_path, arguments=('no_command',))
+    process.process.wait(30)
+    with pytest.raises(NodeDiedError, match=r'helper ended with exit code 2(.|\n)*no_command'):
+        process.check()
+    assert process.stop() == 2
