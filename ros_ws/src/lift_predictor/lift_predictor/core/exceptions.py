@@ -21,3 +21,11 @@ class AsymmetricLiftError(TaskError):
 
 class UnreachableError(LiftPredictorError):
     """The hands cannot be brought where the task wants them."""
+
+
+class PlanError(TaskError):
+    """A task to plan is described wrongly; names (file,) field and value."""
+
+
+class CancelledError(LiftPredictorError):
+    """Somebody asked for the work to end before it was done."""

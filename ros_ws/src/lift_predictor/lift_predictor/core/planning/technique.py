@@ -1,0 +1,91 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Squat, semi-squat and stoop as ranges of the Stoop-Squat-Index (Schmid 2022).
+
+The index relates how far the hips are lowered from upright standing to how far the seventh
+cervical vertebra is: 100 (1 - hips / C7). It is 0 where only the legs bend, 100 where only the
+trunk leans.
+"""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lift_predictor.core.exceptions import PlanError
+from lift_predictor.core.sagittal.kinematics import chain_positions
+from lift_predictor.core.sagittal.parameters import LiftParameters
+from lift_predictor.core.sagittal.person import Person
+
+Array = NDArray[np.float64]
+
+FREE: Final = 'free'
+
+
+@dataclass(frozen=True)
+class Technique:
+    """Range of the Stoop-Squat-Index that has a name; None: any."""
+
+    name: str
+    lower: float | None
+    upper: float | None
+    source: str
+
+    def holds(self, index: float) -> bool:
+        """Tell whether an index is of this technique."""
+        return (
+            self.lower is None or self.upper is None or bool(self.lower <= index <= self.upper)
+        )
+
+
+@cache
+def techniques() -> dict[str, Technique]:
+    """All techniques of `data/techniques.csv` by name."""
+    table = files('lift_predictor') / 'data' / 'techniques.csv'
+    rows = csv.DictReader(table.read_text(encoding='utf-8').splitlines())
+    found = {}
+    for row in rows:
+        lower, upper = (
+            float(row[key]) if row[key] else None for key in ('index_lower', 'index_upper')
+        )
+        found[row['technique']] = Technique(row['technique'], lower, upper, row['source'])
+    return found
+
+
+def technique(name: str) -> Technique:
+    """Return one technique.
+
+    Raises
+    ------
+    PlanError
+        An unknown name.
+    """
+    known = techniques()
+    if name not in known:
+        raise PlanError(f'task.technique: {name!r} is not one of {", ".join(known)}')
+    return known[name]
+
+
+def lowering(q: Array, person: Person, parameters: LiftParameters) -> tuple[Array, Array]:
+    """How far hips and C7 are below their height in upright standing (n,) [m]."""
+    state = chain_positions(q, parameters)
+    neutral = person.neutral
+    offset = (neutral['c7'] - neutral['l5_s1'])[[0, 2]]
+    angle = state.angles['trunk']
+    c7 = state.joints['lumbar'][:, 1] + np.sin(angle) * offset[0] + np.cos(angle) * offset[1]
+    ankle = neutral['ankle_r'][2] - parameters.ankle[1]
+    hips = neutral['hip_r'][2] - ankle - state.joints['hip'][:, 1]
+    return hips, neutral['c7'][2] - ankle - c7
+
+
+def stoop_squat_index(q: Array, person: Person, parameters: LiftParameters) -> Array:
+    """Stoop-Squat-Index of postures q (n, 6); NaN where C7 is not lowered."""
+    hips, c7 = lowering(q, person, parameters)
+    lowered = c7 > 0.0
+    return np.where(lowered, 100.0 * (1.0 - hips / np.where(lowered, c7, 1.0)), np.nan)
