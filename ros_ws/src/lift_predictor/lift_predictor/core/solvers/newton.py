@@ -1,0 +1,109 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""The Newton system of the interior-point method, condensed to the variables."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+FIRST_SHIFT, LEAST_SHIFT, LARGEST_SHIFT = 1e-4, 1e-20, 1e40
+FIRST_GROWTH, GROWTH, DECAY = 100.0, 8.0, 1.0 / 3.0
+"""Multiples of the identity tried (Waechter and Biegler 2006, algorithm IC)."""
+EQUALITY_SHIFT = 1e-8
+"""Regularisation of the Schur complement where the equality rows depend on each other (ibid.)."""
+CONVEXIFICATION = 10.0
+"""Weight of the equality rows' outer products, relative to the matrix: the step is unchanged as
+the rows' change is prescribed, but a matrix positive on their null space becomes positive."""
+
+
+@dataclass
+class InertiaMemory:
+    """The last multiple of the identity that was needed; the next search begins near it."""
+
+    last: float = 0.0
+
+
+class NewtonSystem:
+    """Factors of [K, E'; E, 0] by Cholesky of K and of the Schur complement of E.
+
+    Parameters
+    ----------
+    matrix : array, shape (n, n)
+        Condensed matrix with the bounds' curvature on its diagonal.
+    equality : array, shape (n_equalities, n)
+        Jacobian E of the equality rows.
+    memory : InertiaMemory
+        Kept from iteration to iteration.
+    """
+
+    def __init__(self, matrix: Array, equality: Array, memory: InertiaMemory) -> None:
+        self._equality = equality
+        self._weight = 0.0
+        if len(equality):
+            squares = float(np.sum(equality * equality))
+            if squares > 0.0:
+                trace = float(np.abs(np.diagonal(matrix)).mean())
+                self._weight = CONVEXIFICATION * max(trace, 1.0) * len(equality) / squares
+            matrix = matrix + self._weight * (equality.T @ equality)
+        self.shift, self._factor = _factorise(matrix, memory)
+        if len(equality):
+            self._inner = _solve(self._factor, equality.T)
+            schur = equality @ self._inner
+            self._schur = _regularised(schur)
+
+    def solve(self, right: Array, residual: Array) -> tuple[Array, Array]:
+        """Solve K dx + E' y = right with E dx = -residual; return dx and y."""
+        if not len(self._equality):
+            return _solve(self._factor, right), residual
+        corrected = right - self._weight * (self._equality.T @ residual)
+        free = _solve(self._factor, corrected)
+        y = _solve(self._schur, self._equality @ free + residual)
+        return free - self._inner @ y, y
+
+
+def _regularised(schur: Array) -> Array:
+    """Factor of a positive semidefinite matrix, shifted as far as it is singular."""
+    factor = _cholesky(schur)
+    shift = EQUALITY_SHIFT * max(float(np.abs(np.diagonal(schur)).max()), 1e-300)
+    while factor is None:
+        if not np.isfinite(shift):
+            raise np.linalg.LinAlgError('the Schur complement is not finite')
+        factor = _cholesky(schur + shift * np.eye(len(schur)))
+        shift *= 10.0
+    return factor
+
+
+def _factorise(matrix: Array, memory: InertiaMemory) -> tuple[float, Array]:
+    factor = _cholesky(matrix)
+    if factor is not None:
+        return 0.0, factor
+    shift = FIRST_SHIFT if memory.last == 0.0 else max(LEAST_SHIFT, DECAY * memory.last)
+    growth = FIRST_GROWTH if memory.last == 0.0 else GROWTH
+    unit = np.eye(len(matrix))
+    while shift < LARGEST_SHIFT:
+        factor = _cholesky(matrix + shift * unit)
+        if factor is not None:
+            memory.last = shift
+            return shift, factor
+        shift *= growth
+    raise np.linalg.LinAlgError('the condensed matrix is not finite')
+
+
+def _cholesky(matrix: Array) -> Array | None:
+    # Loads for long, and only this reference implementation needs it.
+    from scipy.linalg.lapack import dpotrf
+
+    factor, info = dpotrf(matrix, lower=1, clean=0)
+    return factor if info == 0 and np.isfinite(factor[-1, -1]) else None
+
+
+def _solve(factor: Array, right: Array) -> Array:
+    from scipy.linalg.lapack import dpotrs
+
+    solution: Array = dpotrs(factor, right, lower=1)[0]
+    return solution
