@@ -19,7 +19,7 @@ from human_model.report import SolveReport, SolveStatus
 from human_model.subject import Subject
 from lift_predictor.core.exceptions import TaskError, UnreachableError
 from lift_predictor.core.sagittal.comparison import LiftComparison, compare
-from lift_predictor.core.sagittal.evaluation import evaluate, sample
+from lift_predictor.core.sagittal.evaluation import evaluate, sample, total_effort
 from lift_predictor.core.sagittal.lift_motion import body_motion, mtp_torque, sample_times
 from lift_predictor.core.sagittal.nlp import Grid
 from lift_predictor.core.sagittal.person import COEFFICIENT_SET, Person
@@ -162,7 +162,13 @@ class LiftPredictor:
         progress : callable, optional
             Told after each start; what it raises ends the work between two starts.
         """
-        return self._solve(task, time.perf_counter(), starts, progress)[0]
+        return self.solve_and_compare(task, starts, progress)[0]
+
+    def solve_and_compare(
+        self, task: LiftTask2D, starts: Sequence[Start], progress: Progress | None = None
+    ) -> tuple[PredictedLift2D, LiftComparison | None]:
+        """Do as `solve_task`; compare if the task was recorded and there is a solution."""
+        return self._solve(task, time.perf_counter(), starts, progress)
 
     def _solve(
         self,
@@ -206,7 +212,8 @@ class LiftPredictor:
             best = optima[0]
             if not best.converged:
                 break
-            check = verify(report, self.programme.grid, best.control, task.parameters, task.bounds)
+            parameters = replace(task.parameters, box_mass=best.box_mass)
+            check = verify(report, self.programme.grid, best.control, parameters, task.bounds)
             late = attempt == self.options.refinements or time.perf_counter() > deadline
             if check.passed or late:
                 break
@@ -227,7 +234,7 @@ class LiftPredictor:
         check: Verification | None,
         notes: tuple[str, ...],
     ) -> tuple[PredictedLift2D, LiftComparison | None]:
-        parameters = task.parameters
+        parameters = replace(task.parameters, box_mass=optima[0].box_mass)
         function = self.programme.functions['report']
         times = sample_times(parameters.duration)
         s = times / parameters.duration
@@ -261,7 +268,8 @@ class LiftPredictor:
         )
         if task.measured is None:
             return predicted, None
-        return predicted, compare(function, task, times, q, loads, optima[0].objective)
+        effort = total_effort(function, self.programme.grid, optima[0].control, parameters)
+        return predicted, compare(function, task, times, q, loads, effort)
 
 
 def _require_good(lift: Lift) -> None:

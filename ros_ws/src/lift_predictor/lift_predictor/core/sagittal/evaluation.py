@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lift_predictor.core.bspline import RestToRestSpline
+from lift_predictor.core.bspline import RestToRestSpline, simpson_weights
+from lift_predictor.core.sagittal.nlp import Grid
 from lift_predictor.core.sagittal.node_functions import CENTRES, REPORT_OUTPUTS
 from lift_predictor.core.sagittal.parameters import LiftParameters
 
@@ -82,6 +83,25 @@ def evaluate(
         effort=values['effort'][:, 0],
         centres=values['centres'].reshape(n, len(CENTRES), 2),
     )
+
+
+def total_effort(report: Any, grid: Grid, control: Array, parameters: LiftParameters) -> float:
+    """Return the first term of equation 2.11 [s] as the programme integrates it.
+
+    Parameters
+    ----------
+    report : casadi.Function
+        `Programme.functions['report']`.
+    grid : Grid
+        Of the solution.
+    control : array, shape (n_free, 6)
+        Free control values [rad].
+    parameters : LiftParameters
+        Person, task and the mass in the hands.
+    """
+    duration = parameters.duration
+    loads = evaluate(report, *sample(grid.spline, control, grid.times, duration), parameters)
+    return float(duration * simpson_weights(grid.n_nodes) @ loads.effort)
 
 
 def sample(

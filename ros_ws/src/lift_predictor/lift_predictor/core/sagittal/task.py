@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -93,7 +94,10 @@ class LiftTask2D:
 
 
 def build_task(
-    person: Person, lift: Lift, box: Box, posture_tolerance: float = POSTURE_TOLERANCE
+    person: Person,
+    lift: Lift,
+    box: Box,
+    posture_tolerance: float | Sequence[float] = POSTURE_TOLERANCE,
 ) -> LiftTask2D:
     """Build the task of a recorded lift.
 
@@ -105,8 +109,8 @@ def build_task(
         The recorded lift, on either skeleton.
     box : Box
         What was lifted.
-    posture_tolerance : float
-        Epsilon of equation 4.8 [rad].
+    posture_tolerance : float or sequence of 3 floats
+        Epsilon of equation 4.8, or those of equation 2.23 at start, middle and end [rad].
 
     Raises
     ------
@@ -123,7 +127,8 @@ def build_task(
     measured = sagittal_motion(motion, lift.start, person.neutral, plane)
     duration = lift.end - lift.start
     instants = np.array([0.0, 0.5, 1.0]) * duration
-    _require_symmetry(motion, plane, measured, instants, box, posture_tolerance)
+    tolerance = np.broadcast_to(np.asarray(posture_tolerance, dtype=float), 3)
+    _require_symmetry(motion, plane, measured, instants, box, tolerance)
     ankle, support = _feet(motion, plane)
     from_hand = _box_from_hand(motion, plane, measured)
     parameters = LiftParameters(
@@ -146,7 +151,7 @@ def build_task(
     for row, place in enumerate((box.start, box.end)):
         if place is not None:
             hand[row] = plane.into(np.asarray(place, dtype=float)) - from_hand
-    bounds = _bounds(person, postures, posture_tolerance, hand, box.mass)
+    bounds = _bounds(person, postures, tolerance, hand, box.mass)
     ends = _reachable_ends(bounds, postures, parameters)
     return LiftTask2D(
         lift.lift_id, lift.start, person, plane, measured, parameters, bounds, ends, notes
@@ -163,14 +168,14 @@ def _require_symmetry(
     measured: SagittalMotion,
     instants: Array,
     box: Box,
-    tolerance: float,
+    tolerance: Array,
 ) -> None:
     """Refuse lifts whose sides lie further from their mean than the posture may (equation 4.8)."""
-    for when, time in zip(INSTANTS, instants, strict=True):
+    for when, time, most in zip(INSTANTS, instants, tolerance, strict=True):
         half = 0.5 * np.abs(_at(measured, measured.side_difference, time))
         worst = int(np.argmax(half))
-        if half[worst] > tolerance:
-            apart, allowed = np.degrees((2.0 * half[worst], 2.0 * tolerance))
+        if half[worst] > most:
+            apart, allowed = np.degrees((2.0 * half[worst], 2.0 * most))
             raise AsymmetricLiftError(
                 f'{JOINTS[worst]}: right and left are {apart:.0f} deg apart at the {when} of the '
                 f'lift; the sagittal model allows {allowed:.0f} deg'
@@ -186,10 +191,10 @@ def _require_symmetry(
     if box.mass > 0.0:
         checks['the grip, seen from the ankles,'] = aside
     for what, angle in checks.items():
-        if angle.max() > tolerance:
+        if angle.max() > tolerance.max():
             raise AsymmetricLiftError(
                 f'{what} turns {np.degrees(angle.max()):.0f} deg out of the sagittal plane; '
-                f'the sagittal model allows {np.degrees(tolerance):.0f} deg'
+                f'the sagittal model allows {np.degrees(tolerance.max()):.0f} deg'
             )
 
 
@@ -239,10 +244,10 @@ def _fit_circles(
 
 
 def _bounds(
-    person: Person, postures: Array, tolerance: float, hand: Array, mass: float
+    person: Person, postures: Array, tolerance: Array, hand: Array, mass: float
 ) -> LiftBounds:
-    lower = np.maximum(postures - tolerance, person.angle_lower)
-    upper = np.minimum(postures + tolerance, person.angle_upper)
+    lower = np.maximum(postures - tolerance[:, None], person.angle_lower)
+    upper = np.minimum(postures + tolerance[:, None], person.angle_upper)
     for row, when in enumerate(INSTANTS):
         for column, joint in enumerate(JOINTS):
             if lower[row, column] > upper[row, column]:

@@ -23,6 +23,8 @@ TOLERANCE: Final = 1e-8
 """IPOPT's default relative tolerance."""
 FEASIBLE: Final = 1e-5
 """Largest violation of a scaled constraint row that counts as met."""
+BINDING: Final = 1e-5
+"""Smallest multiplier of a limit that counts as binding: far above what the barrier leaves."""
 
 
 Progress = Callable[[int, int, float], None]
@@ -65,6 +67,8 @@ class Optimum:
         Largest violation of a bound or scaled row.
     violated : str
         Name of that row; empty when nothing is violated.
+    binding : tuple of (str, float)
+        Limits that hold the objective back, with their multipliers, the strongest first.
     stationarity, complementarity : float
         Largest element of the Lagrangian's gradient, and of multiplier times slack.
     solve_time : float
@@ -80,6 +84,7 @@ class Optimum:
     iterations: int
     violation: float
     violated: str
+    binding: tuple[tuple[str, float], ...]
     stationarity: float
     complementarity: float
     solve_time: float
@@ -174,6 +179,7 @@ class LiftSolver:
             iterations=int(stats['iter_count']),
             violation=violation,
             violated=self._name(index) if violation > FEASIBLE else '',
+            binding=self._binding(multipliers, low, high),
             stationarity=float(np.abs(stationarity).max()),
             complementarity=float(complementarity.max(initial=0.0)),
             solve_time=elapsed,
@@ -205,6 +211,14 @@ class LiftSolver:
                 runs, key=lambda r: (not r.converged, r.objective if r.converged else r.violation)
             )
         )
+
+    def _binding(
+        self, multipliers: Array, low: Array, high: Array
+    ) -> tuple[tuple[str, float], ...]:
+        """Inequalities with a multiplier, in the order of its size."""
+        size = np.where(low < high, np.abs(multipliers), 0.0)
+        order = np.argsort(-size)[: np.count_nonzero(size > BINDING)]
+        return tuple((self._name(int(i)), float(size[i])) for i in order)
 
     def _name(self, index: int) -> str:
         n = self.programme.grid.n_variables
