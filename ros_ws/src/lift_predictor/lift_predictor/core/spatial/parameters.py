@@ -1,0 +1,223 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Coordinates of the spatial programme, and everything about person and task as one vector.
+
+All Cartesian numbers are in the stance frame: origin on the ground half way between the ankles, x
+along the mean direction of the feet, y to the left, z up.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lift_predictor.core.exceptions import TaskError
+
+Array = NDArray[np.float64]
+
+SIDES: Final = ('r', 'l')
+MIRROR: Final = {'r': 1.0, 'l': -1.0}
+"""Sign of the rotations about the forward and upward axes (skeleton table, left side mirrored)."""
+
+ROOT: Final = (
+    'ankle_mean',
+    'hip_mean',
+    'pelvis_aside',
+    'pelvis_turn',
+    'knee_angle_r',
+    'knee_angle_l',
+)
+"""What places the pelvis above the fixed feet. In a symmetric posture on parallel feet below the
+hips, ankle_mean is the ankle's, hip_mean the hips' flexion; in general they place the pelvis
+forward and tilt it by the same formulas. pelvis_aside is the middle of the hips to the left [m],
+pelvis_turn the turn of the line of the hips about the vertical."""
+
+SPINE: Final = tuple(
+    f'{joint}_{name}'
+    for joint in ('lumbar', 'thorax')
+    for name in ('extension', 'bending', 'rotation')
+)
+ARM: Final = (
+    'arm_flex',
+    'arm_add',
+    'arm_rot',
+    'elbow_flex',
+    'pro_sup',
+    'wrist_flex',
+    'wrist_dev',
+)
+SPLINED: Final = (*ROOT, *SPINE, *(f'{name}_{side}' for side in SIDES for name in ARM))
+"""Coordinates that are splines in time: the optimisation variables."""
+
+LEG: Final = ('hip_flexion', 'hip_adduction', 'hip_rotation', 'ankle_angle', 'subtalar_angle')
+DEPENDENT: Final = tuple(f'{name}_{side}' for side in SIDES for name in LEG)
+"""Leg coordinates that follow from the others in closed form, as the feet are flat and fixed."""
+
+LEG_STRENGTH: Final = ('hip_flexion', 'knee_angle', 'ankle_angle')
+STRONG: Final = (
+    *SPINE,
+    *(f'{name}_{side}' for side in SIDES for name in ARM),
+    *(f'{name}_{side}' for side in SIDES for name in LEG_STRENGTH),
+)
+"""Coordinates whose strength is published: they have torque limits and take part in the effort."""
+
+CONSTANT_STRENGTH: Final = frozenset(
+    (
+        *(f'{joint}_{name}' for joint in ('lumbar', 'thorax') for name in ('bending', 'rotation')),
+        *(f'{n}_{s}' for s in SIDES for n in ('arm_add', 'arm_rot', 'pro_sup', 'wrist_dev')),
+    )
+)
+"""Coordinates whose published strength does not depend on angle and speed (strength_surfaces)."""
+
+MOVING: Final = (
+    'pelvis',
+    'lumbar',
+    'thorax',
+    *(f'{name}_{side}' for side in SIDES for name in ('upper_arm', 'forearm', 'hand')),
+    *(f'{name}_{side}' for side in SIDES for name in ('shank', 'thigh')),
+)
+"""Segments that move; the thorax carries the head."""
+BODIES: Final = (*MOVING, 'foot_r', 'foot_l')
+"""The feet carry their toes; they do not move."""
+
+SPHERE_BODIES: Final = (
+    *(f'{name}_{side}' for side in SIDES for name in ('foot', 'shank', 'shank', 'thigh', 'thigh')),
+    'lumbar',
+    'thorax',
+)
+"""Segments of the collision spheres: ankle, shank, knee, thigh, hip of both sides, lower and upper
+spine (equation 3.10)."""
+SPHERE_NAMES: Final = (
+    *(f'{n}_{s}' for s in SIDES for n in ('ankle', 'shank', 'knee', 'thigh', 'hip')),
+    'lower spine',
+    'upper spine',
+)
+
+N_SPLINED: Final = len(SPLINED)
+SCALARS: Final = ('box_mass', 'duration')
+"""Variables that hold for the whole lift [kg], [s]."""
+N_SCALARS: Final = len(SCALARS)
+
+SHAPES: Final[dict[str, tuple[int, int]]] = {
+    'body': (len(BODIES), 10),
+    'pelvis': (1, 3),
+    'spine': (1, 4),
+    'arm': (1, 4),
+    'leg': (1, 2),
+    'strength_lower': (len(STRONG), 8),
+    'strength_upper': (len(STRONG), 8),
+    'sphere': (len(SPHERE_BODIES), 4),
+    'ankle': (2, 3),
+    'foot_turn': (1, 2),
+    'sole': (1, 2),
+    'inward_lean': (1, 1),
+    'gravity': (1, 1),
+    'box_radius': (1, 1),
+    'box_width': (1, 1),
+    'box_turning': (1, 1),
+    'box_from_hand': (1, 3),
+    'objective': (1, 2),
+}
+N_PARAMETERS: Final = sum(rows * columns for rows, columns in SHAPES.values())
+
+
+@dataclass(frozen=True, eq=False)
+class SpatialParameters:
+    """Numbers of one person and one task.
+
+    Attributes
+    ----------
+    body : array, shape (15, 10)
+        Per segment of `BODIES`: mass [kg], centre of mass (3) [m], inertia about it (xx, yy, zz,
+        xy, xz, yz) [kg m^2], in the segment's frame.
+    pelvis : array, shape (3,)
+        Half width of the hips; L5-S1 forward and up from their middle [m].
+    spine : array, shape (4,)
+        T12-L1 forward and up from L5-S1; shoulders forward and up from T12-L1 [m].
+    arm : array, shape (4,)
+        Half width of the shoulders, upper arm, forearm, wrist to grip [m].
+    leg : array, shape (2,)
+        Thigh and shank [m].
+    strength_lower, strength_upper : array, shape (26, 8)
+        Coefficients of equations 2.14 and 2.17 for `STRONG` in the coordinate itself [N m]; the
+        lower ones give a negative torque.
+    sphere : array, shape (12, 4)
+        Collision spheres: centre in the segment's frame, radius [m]; a radius that is not
+        positive switches it off.
+    ankle : array, shape (2, 3)
+        Right and left ankle [m].
+    foot_turn : array, shape (2,)
+        Direction of right and left foot about the vertical [rad].
+    sole : array, shape (2,)
+        Heel and tip of the toes along the foot from below the ankle [m].
+    inward_lean : float
+        Part of the angle from each foot to the centre of mass by which its force leans inwards.
+    gravity : float
+        [m/s^2].
+    box_radius, box_width : float
+        Half depth; distance of the hands [m].
+    box_turning : float
+        Moment of inertia of the box about the vertical, per mass and squared width.
+    box_from_hand : array, shape (3,)
+        Box centre from the middle of the hands, in the box's axes [m].
+    objective : array, shape (2,)
+        Factors a and b of the objective a effort - b log(W + 10), W in N (equation 3.9 with
+        weights and normalisation multiplied).
+    """
+
+    body: Array
+    pelvis: Array
+    spine: Array
+    arm: Array
+    leg: Array
+    strength_lower: Array
+    strength_upper: Array
+    sphere: Array
+    ankle: Array
+    foot_turn: Array
+    sole: Array
+    inward_lean: float
+    gravity: float
+    box_radius: float
+    box_width: float
+    box_turning: float
+    box_from_hand: Array
+    objective: Array = field(default_factory=lambda: np.array([1.0, 0.0]))
+
+    def pack(self) -> Array:
+        """Return the parameter vector of the compiled functions, shape (N_PARAMETERS,).
+
+        Raises
+        ------
+        TaskError
+            A field of the wrong shape or a value that is not finite.
+        """
+        parts = []
+        for name, shape in SHAPES.items():
+            value = np.asarray(getattr(self, name), dtype=float)
+            if value.size != shape[0] * shape[1]:
+                raise TaskError(f'{name}: shape {value.shape}, expected {shape}')
+            if not np.all(np.isfinite(value)):
+                raise TaskError(f'{name}: not finite: {value.tolist()}')
+            parts.append(value.ravel())
+        return np.concatenate(parts)
+
+    @property
+    def body_mass(self) -> float:
+        """Mass of the person [kg]."""
+        return float(self.body[:, 0].sum())
+
+
+def unpack(vector: Any) -> dict[str, list[list[Any]]]:
+    """Split a symbolic parameter vector into named blocks (matrices are row-major)."""
+    blocks = {}
+    start = 0
+    for name, (rows, columns) in SHAPES.items():
+        blocks[name] = [
+            [vector[start + r * columns + c] for c in range(columns)] for r in range(rows)
+        ]
+        start += rows * columns
+    return blocks
