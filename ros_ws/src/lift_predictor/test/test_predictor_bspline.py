@@ -12,7 +12,7 @@ from scipy.interpolate import BSpline
 
 from lift_predictor.core.bspline import RestToRestSpline, simpson_weights
 from lift_predictor.core.exceptions import SplineError
-from lift_predictor.core.sagittal.nlp import Grid
+from lift_predictor.core.sagittal.grid import Grid
 
 
 @given(n_control=st.integers(5, 12), seed=st.integers(0, 2**32 - 1))

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lift_predictor.core.sagittal.nlp import Grid
+from lift_predictor.core.sagittal.grid import Grid
 from lift_predictor.core.sagittal.parameters import LiftParameters
 from lift_predictor.core.solvers import compiled
 from lift_predictor.core.solvers.compiled import build_programme, cache_directory, content_hash
@@ -36,7 +36,7 @@ def test_cache_directory_follows_the_environment(
 
 BUILD = """
 from lift_predictor.core.solvers.compiled import build_programme
-from lift_predictor.core.sagittal.nlp import Grid
+from lift_predictor.core.sagittal.grid import Grid
 print(build_programme(Grid(5, 5)).how)
 """
 

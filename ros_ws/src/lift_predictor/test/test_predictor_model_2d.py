@@ -15,8 +15,9 @@ from human_model.strength import JointStrength, coefficient_sets
 from human_model.subject import Subject
 from lift_predictor.core.exceptions import TaskError
 from lift_predictor.core.sagittal.evaluation import SagittalLoads, evaluate
+from lift_predictor.core.sagittal.grid import CENTRES, NODE_ROWS
 from lift_predictor.core.sagittal.kinematics import chain_positions, pelvis_motion
-from lift_predictor.core.sagittal.node_functions import CENTRES, NODE_ROWS, node_functions
+from lift_predictor.core.sagittal.node_functions import node_functions
 from lift_predictor.core.sagittal.parameters import JOINTS, LiftParameters
 from lift_predictor.core.sagittal.person import Person
 

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from lift_predictor.core.sagittal.evaluation import evaluate, sample
-from lift_predictor.core.sagittal.nlp import HAND_SCALE, Grid, LiftBounds, programme_functions
-from lift_predictor.core.sagittal.node_functions import NODE_ROWS
+from lift_predictor.core.sagittal.grid import HAND_SCALE, NODE_ROWS, Grid, LiftBounds
+from lift_predictor.core.sagittal.nlp import programme_functions
 from lift_predictor.core.sagittal.parameters import LiftParameters
 
 GRID = Grid(6, 7)

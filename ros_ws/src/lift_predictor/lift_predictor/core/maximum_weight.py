@@ -18,7 +18,7 @@ from lift_predictor.core.exceptions import TaskError, UnreachableError
 from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.sagittal.comparison import LiftComparison
 from lift_predictor.core.sagittal.evaluation import total_effort
-from lift_predictor.core.sagittal.nlp import WEIGHT_OFFSET
+from lift_predictor.core.sagittal.grid import WEIGHT_OFFSET
 from lift_predictor.core.sagittal.prediction import PredictedLift2D
 from lift_predictor.core.sagittal.starts import make_starts
 from lift_predictor.core.sagittal.task import Box, LiftTask2D, build_task

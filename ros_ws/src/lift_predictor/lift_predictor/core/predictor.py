@@ -20,8 +20,8 @@ from human_model.subject import Subject
 from lift_predictor.core.exceptions import TaskError, UnreachableError
 from lift_predictor.core.sagittal.comparison import LiftComparison, compare
 from lift_predictor.core.sagittal.evaluation import evaluate, sample, total_effort
+from lift_predictor.core.sagittal.grid import Grid
 from lift_predictor.core.sagittal.lift_motion import body_motion, mtp_torque, sample_times
-from lift_predictor.core.sagittal.nlp import Grid
 from lift_predictor.core.sagittal.person import COEFFICIENT_SET, Person
 from lift_predictor.core.sagittal.prediction import TORQUE_NAMES, PredictedLift2D
 from lift_predictor.core.sagittal.starts import make_starts

@@ -15,7 +15,7 @@ from lift_predictor.core.exceptions import PlanError
 from lift_predictor.core.planning.plan_task import LATERAL_TOLERANCE, PlanTask
 from lift_predictor.core.planning.postures import Posture, find_postures
 from lift_predictor.core.planning.technique import FREE, technique
-from lift_predictor.core.sagittal.nlp import LiftBounds
+from lift_predictor.core.sagittal.grid import LiftBounds
 from lift_predictor.core.sagittal.parameters import N_JOINTS, LiftParameters
 from lift_predictor.core.sagittal.person import Person
 from lift_predictor.core.sagittal.plane import SagittalPlane

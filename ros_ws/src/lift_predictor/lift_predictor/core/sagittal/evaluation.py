@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lift_predictor.core.bspline import RestToRestSpline, simpson_weights
-from lift_predictor.core.sagittal.nlp import Grid
-from lift_predictor.core.sagittal.node_functions import CENTRES, REPORT_OUTPUTS
+from lift_predictor.core.sagittal.grid import CENTRES, REPORT_OUTPUTS, Grid
 from lift_predictor.core.sagittal.parameters import LiftParameters
 
 Array = NDArray[np.float64]

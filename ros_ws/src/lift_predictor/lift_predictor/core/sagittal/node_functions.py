@@ -4,50 +4,18 @@
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import Any
 
 import casadi as ca
 
+from lift_predictor.core.sagittal.grid import CENTRES, N_NODE, NODE_ROWS, REPORT_OUTPUTS
 from lift_predictor.core.sagittal.model import chain_state, torque_limits
 from lift_predictor.core.sagittal.parameters import (
     BODIES,
-    CIRCLE_BODIES,
-    CIRCLES_PER_BODY,
-    JOINTS,
     N_JOINTS,
     N_PARAMETERS,
     N_SCALARS,
     unpack,
-)
-
-N_NODE: Final = 3 * N_JOINTS
-"""Node variables: joint angles and their first and second derivatives by normalised time."""
-
-NODE_ROWS: Final = (
-    *(f'joint torque limit (4.2) of {joint}' for joint in JOINTS),
-    'balance (4.3) at the rear edge of the foot support region',
-    'balance (4.3) at the front edge of the foot support region',
-    *(
-        f'collision (4.5) of the box with the {body}'
-        for body in CIRCLE_BODIES
-        for _ in range(CIRCLES_PER_BODY)
-    ),
-)
-NODE_UPPER: Final = (1.0,) * N_JOINTS + (float('inf'),) * (len(NODE_ROWS) - N_JOINTS)
-"""Upper bounds of the node rows; all lower bounds are 0."""
-
-CENTRES: Final = ('ankle', 'knee', 'hip', 'lumbar', 'shoulder', 'elbow', 'hand')
-REPORT_OUTPUTS: Final = (
-    'torque',
-    'lower',
-    'upper',
-    'ground_force',
-    'ground_moment',
-    'hand_force',
-    'rows',
-    'effort',
-    'centres',
-    'segment_angle',
 )
 
 

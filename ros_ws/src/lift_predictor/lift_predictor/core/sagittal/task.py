@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from human_model.motion import BodyMotion, Lift
 from lift_predictor.core.exceptions import AsymmetricLiftError, TaskError, UnreachableError
+from lift_predictor.core.sagittal.grid import LiftBounds
 from lift_predictor.core.sagittal.kinematics import REACHED, chain_positions, reach
-from lift_predictor.core.sagittal.nlp import LiftBounds
 from lift_predictor.core.sagittal.parameters import JOINTS, LiftParameters
 from lift_predictor.core.sagittal.person import Person
 from lift_predictor.core.sagittal.plane import SagittalMotion, SagittalPlane, sagittal_motion

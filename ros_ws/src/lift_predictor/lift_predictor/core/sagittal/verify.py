@@ -11,9 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lift_predictor.core.sagittal.evaluation import evaluate, sample
+from lift_predictor.core.sagittal.grid import NODE_UPPER, Grid, LiftBounds
 from lift_predictor.core.sagittal.kinematics import chain_positions
-from lift_predictor.core.sagittal.nlp import Grid, LiftBounds
-from lift_predictor.core.sagittal.node_functions import NODE_UPPER
 from lift_predictor.core.sagittal.parameters import JOINTS, LiftParameters
 
 Array = NDArray[np.float64]

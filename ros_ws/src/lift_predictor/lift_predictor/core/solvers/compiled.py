@@ -25,10 +25,12 @@ from typing import Any, Final
 
 import casadi as ca
 
-from lift_predictor.core.sagittal.nlp import Grid, programme_functions
+from lift_predictor.core.sagittal.grid import Grid
+from lift_predictor.core.sagittal.nlp import programme_functions
 
 SOURCES: Final = (
     'bspline.py',
+    'sagittal/grid.py',
     'sagittal/model.py',
     'sagittal/nlp.py',
     'sagittal/node_functions.py',

@@ -13,7 +13,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from lift_predictor.core.sagittal.nlp import LiftBounds
+from lift_predictor.core.sagittal.grid import LiftBounds
 from lift_predictor.core.sagittal.parameters import JOINTS
 from lift_predictor.core.solvers.compiled import Programme
 
