@@ -29,3 +29,7 @@ class PlanError(TaskError):
 
 class CancelledError(LiftPredictorError):
     """Somebody asked for the work to end before it was done."""
+
+
+class PercentileError(LiftPredictorError):
+    """No plausible strength explains a recorded maximum lift, or a prediction on the way failed."""
