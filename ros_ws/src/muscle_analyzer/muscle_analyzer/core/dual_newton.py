@@ -3,15 +3,16 @@
 """
 Semismooth Newton method on the dual of the static optimisation, compiled.
 
-The problem (equation 4.10 of the thesis with exponent 2, and reserve actuators)::
+The problem (equation 4.10 of the thesis with exponent p and weights w, and reserve actuators)::
 
-    min  sum a_i^2 + sum c_j^2   subject to   A a + D c = tau,   l <= a <= u
+    min  sum w_i a_i^p + sum c_j^2   subject to   A a + D c = tau,   l <= a <= u
 
-has with multipliers y of the balance the minimisers ``a(y) = clip(A^T y / 2, l, u)`` and
-``c(y) = D y / 2``.  The dual function is concave and piecewise quadratic, its gradient
-``tau - A a(y) - D c(y)`` piecewise linear, so each Newton step solves a symmetric positive
-definite system with one unknown a coordinate (Qi and Sun 1993, A nonsmooth version of
-Newton's method).  The exponent enters through `_minimiser` alone.
+has with multipliers y of the balance the minimisers ``a(y) = clip((A^T y / (p w))^(1/(p-1)), l,
+u)`` and ``c(y) = D y / 2``.  The dual function is concave, its gradient ``tau - A a(y) - D c(y)``
+for p = 2 piecewise linear, so each Newton step solves a symmetric positive definite system with
+one unknown a coordinate (Qi and Sun 1993, A nonsmooth version of Newton's method).  Exponent and
+weights enter through `_minimiser` alone; the reserves are paid for by their square whatever the
+exponent, which keeps the system definite.
 """
 
 import numpy as np
@@ -27,14 +28,23 @@ LINE_TRIALS = 60
 
 
 @njit(cache=True, error_model='numpy')
-def _minimiser(pull: float, low: float, high: float) -> tuple[float, float]:
-    """Minimise ``a^2 - pull a`` over [low, high]; give the minimiser and its slope."""
-    free = 0.5 * pull
+def _minimiser(
+    pull: float, low: float, high: float, weight: float, exponent: float
+) -> tuple[float, float]:
+    """Minimise ``w a^p - pull a`` over [low, high]; give the minimiser and its slope."""
+    if exponent == 2.0:
+        slope = 0.5 / weight
+        free = slope * pull
+    elif pull <= 0.0:
+        return low, 0.0
+    else:
+        free = (pull / (exponent * weight)) ** (1.0 / (exponent - 1.0))
+        slope = free / ((exponent - 1.0) * pull)
     if free <= low:
         return low, 0.0
     if free >= high:
         return high, 0.0
-    return free, 0.5
+    return free, slope
 
 
 @njit(cache=True, error_model='numpy')
@@ -103,6 +113,8 @@ def _evaluate(
     torque: Array,
     lower: Array,
     upper: Array,
+    weight: Array,
+    exponent: float,
     multiplier: Array,
     activation: Array,
     slope: Array,
@@ -116,7 +128,9 @@ def _evaluate(
         pull = 0.0
         for k in range(start[i], start[i + 1]):
             pull += value[k] * multiplier[row[k]]
-        activation[i], slope[i] = _minimiser(pull, lower[i], upper[i])
+        activation[i], slope[i] = _minimiser(
+            pull, lower[i], upper[i], weight[i], exponent
+        )
         for k in range(start[i], start[i + 1]):
             gradient[row[k]] -= value[k] * activation[i]
     worst = 0.0
@@ -155,6 +169,8 @@ def solve_dual(
     torque: Array,
     lower: Array,
     upper: Array,
+    weight: Array,
+    exponent: float,
     multiplier: Array,
     tolerance: float,
     max_iterations: int,
@@ -172,6 +188,10 @@ def solve_dual(
         tau (n_c,) [N m].
     lower, upper
         Bounds of the activations (n_m,).
+    weight
+        Of each muscle in the cost (n_m,), all positive.
+    exponent
+        Of the activations in the cost, at least 2.
     multiplier
         y (n_c,), start on entry and solution on return.
     tolerance
@@ -194,8 +214,9 @@ def solve_dual(
     hessian = np.empty((n_c, n_c))
     iterations = 0
     worst = _evaluate(
-        columns, reserve, torque, lower, upper, multiplier, activation, slope, gradient
-    )
+        columns, reserve, torque, lower, upper, weight, exponent, multiplier,
+        activation, slope, gradient,
+    )  # fmt: skip
     while not worst <= tolerance:
         if iterations == max_iterations or not np.isfinite(worst):
             return activation, gradient, iterations, False
@@ -216,8 +237,9 @@ def solve_dual(
             for j in range(n_c):
                 trial[j] = multiplier[j] + size * step[j]
             worst = _evaluate(
-                columns, reserve, torque, lower, upper, trial, activation, slope, gradient
-            )
+                columns, reserve, torque, lower, upper, weight, exponent, trial,
+                activation, slope, gradient,
+            )  # fmt: skip
             here = 0.0
             for j in range(n_c):
                 here += gradient[j] * step[j]

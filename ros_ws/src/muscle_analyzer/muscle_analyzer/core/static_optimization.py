@@ -3,15 +3,16 @@
 """
 Static optimisation: which muscle forces balance the joint torques (equation 4.10).
 
-The sum of squared activations is minimised; reserve actuators make the balance possible in
-every frame, are paid for in the same cost as OpenSim does, and name the coordinate when
-muscles are too weak.
+The sum of squared activations is minimised, or another criterion of muscle recruitment; reserve
+actuators make the balance possible in every frame, are paid for by their square in the same cost,
+and name the coordinate when muscles are too weak.
 """
 
 from __future__ import annotations
 
 import time
 from dataclasses import dataclass
+from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,7 @@ from numpy.typing import NDArray
 from human_model.report import SolveReport, SolveStatus
 from muscle_analyzer.core.dual_newton import solve_dual
 from muscle_analyzer.core.exceptions import InputArrayError, OptionError
+from muscle_analyzer.core.min_max import SQUARES_SHARE, solve_min_max
 from muscle_analyzer.core.reserves import Reserve
 
 Array = NDArray[np.float64]
@@ -34,8 +36,27 @@ MINIMUM_ACTIVATION = 0.01
 RESERVE_SHARE = 0.05
 #: ... and more than its unit torque, below which a share means nothing.
 RESERVE_CONTROL = 1.0
+#: An activation nearer than this to its bound is at it: interior-point solutions come close.
+AT_BOUND = 1e-8
 #: So many coordinates or muscles are named in a report.
 NAMED = 3
+
+
+class Criterion(StrEnum):
+    """
+    What muscle recruitment minimises.
+
+    The sums of squares and of cubes are equation 4.10 with the exponents 2 (the thesis, OpenSim's
+    default) and 3 (Crowninshield and Brand 1981, J Biomech 14:793); the largest activation is the
+    min/max criterion of Rasmussen et al. 2001 (J Biomech 34:409).
+    """
+
+    SQUARES = 'squares'
+    CUBES = 'cubes'
+    MIN_MAX = 'min_max'
+
+
+EXPONENTS = {Criterion.SQUARES: 2.0, Criterion.CUBES: 3.0, Criterion.MIN_MAX: 2.0}
 
 
 @dataclass(frozen=True)
@@ -45,6 +66,8 @@ class StaticOptimizationOptions:
 
     Attributes
     ----------
+    criterion
+        What is minimised, one of `Criterion`.
     minimum_activation, maximum_activation
         Bounds of every activation.
     tolerance
@@ -53,6 +76,7 @@ class StaticOptimizationOptions:
         Limit of Newton steps.
     """
 
+    criterion: str = Criterion.SQUARES
     minimum_activation: float = MINIMUM_ACTIVATION
     maximum_activation: float = 1.0
     tolerance: float = 1e-10
@@ -105,6 +129,15 @@ class StaticOptimization:
         Reserve of each row of the torque matrix.
     options
         Settings.
+    weight : (n_m,)
+        Of each muscle in the cost, all positive; 1 if omitted.
+    least_activation : (n_m,)
+        Lower bounds in place of ``options.minimum_activation`` where they are higher.
+
+    Raises
+    ------
+    OptionError
+        A setting that cannot be used, by name and value.
     """
 
     def __init__(
@@ -112,8 +145,17 @@ class StaticOptimization:
         muscle_names: tuple[str, ...],
         reserves: tuple[Reserve, ...],
         options: StaticOptimizationOptions | None = None,
+        weight: Array | None = None,
+        least_activation: Array | None = None,
     ) -> None:
         self.options = options or StaticOptimizationOptions()
+        try:
+            self.criterion = Criterion(self.options.criterion)
+        except ValueError:
+            known = ', '.join(Criterion)
+            raise OptionError(
+                f'criterion {self.options.criterion!r} is not known; options: {known}'
+            ) from None
         self.muscle_names = muscle_names
         self.coordinate_names = tuple(reserve.coordinate for reserve in reserves)
         low, high = self.options.minimum_activation, self.options.maximum_activation
@@ -130,7 +172,18 @@ class StaticOptimization:
         self._unit = np.array([reserve.torque for reserve in reserves])
         self._muscle_driven = np.array([reserve.muscle_driven for reserve in reserves], np.bool_)
         self._lower = np.full(len(muscle_names), low)
+        if least_activation is not None:
+            self._lower = np.maximum(self._lower, least_activation)
+        if self._lower.size and not self._lower.max() < high:
+            i = int(self._lower.argmax())
+            raise OptionError(
+                f'least activation of {muscle_names[i]}: {self._lower[i]} must be below '
+                f'maximum_activation {high}'
+            )
         self._upper = np.full(len(muscle_names), high)
+        self._weight = np.ones(len(muscle_names)) if weight is None else np.array(weight, float)
+        if not (np.isfinite(self._weight) & (self._weight > 0.0)).all():
+            raise OptionError('weight: every muscle needs a positive weight in the cost')
         joints = np.array([reserve.joint for reserve in reserves])
         self._same_joint = (joints[:, None] == joints[None, :]).astype(np.float64)
         self._multiplier = np.zeros(len(reserves))
@@ -160,36 +213,36 @@ class StaticOptimization:
         unit = self._unit
         tolerance = self.options.tolerance * max(1.0, float(np.abs(torque).max(initial=0.0)))
         multiplier = self._multiplier.copy()
-        limit = self.options.max_iterations
         built = time.perf_counter()
-        activation, residual, iterations, converged = solve_dual(
-            matrix, unit, torque, self._lower, self._upper, multiplier, tolerance, limit
+        activation, residual, iterations, converged, cap = self._run(
+            matrix, torque, multiplier, tolerance
         )
         if not converged:
             # A start far from this frame's solution: once more from nothing.
             multiplier[:] = 0.0
-            activation, residual, more, converged = solve_dual(
-                matrix, unit, torque, self._lower, self._upper, multiplier, tolerance, limit
+            activation, residual, more, converged, cap = self._run(
+                matrix, torque, multiplier, tolerance
             )
             iterations += more
         self._multiplier = multiplier if converged else np.zeros_like(multiplier)
         solved = time.perf_counter()
 
         control = 0.5 * unit * multiplier
-        gradient = 2.0 * activation - matrix.T @ multiplier
-        projected = np.clip(activation - gradient, self._lower, self._upper)
+        gradient = self._gradient(activation) - matrix.T @ multiplier
+        upper = np.minimum(self._upper, cap)
+        projected = np.clip(activation - gradient, self._lower, upper)
         reserve = unit * control
         joint_moment = np.sqrt(self._same_joint @ torque**2)
         weak = self._muscle_driven & (np.abs(reserve) > RESERVE_SHARE * joint_moment)
         weak &= np.abs(control) > RESERVE_CONTROL
         unbalanced = tuple(np.array(self.coordinate_names)[weak].tolist())
-        at_upper = activation >= self._upper
+        at_upper = activation >= self._upper - AT_BOUND
         status, message = self._verdict(converged, residual, reserve, weak, at_upper)
         report = SolveReport(
             status=status,
             message=message,
             iterations=int(iterations),
-            objective=float(activation @ activation + control @ control),
+            objective=self._cost(activation, cap) + float(control @ control),
             primal_residual=float(np.abs(residual).max(initial=0.0)),
             dual_residual=float(np.abs(projected - activation).max(initial=0.0)),
             build_time=built - began,
@@ -199,11 +252,37 @@ class StaticOptimization:
             activation=activation,
             reserve=reserve,
             multiplier=multiplier,
-            at_lower=activation <= self._lower,
+            at_lower=activation <= self._lower + AT_BOUND,
             at_upper=at_upper,
             unbalanced=unbalanced,
             report=report,
         )
+
+    def _run(
+        self, matrix: Array, torque: Array, multiplier: Array, tolerance: float
+    ) -> tuple[Array, Array, int, bool, float]:
+        """Give activations, residual, steps, success and the largest activation allowed."""
+        fixed = (matrix, self._unit, torque, self._lower, self._upper, self._weight)
+        limit = self.options.max_iterations
+        if self.criterion is Criterion.MIN_MAX:
+            return solve_min_max(*fixed, multiplier, tolerance, limit)
+        exponent = EXPONENTS[self.criterion]
+        solution = solve_dual(*fixed, exponent, multiplier, tolerance, limit)
+        return *solution, self.options.maximum_activation
+
+    def _share(self) -> float:
+        """Give the factor of the powers in the cost."""
+        return SQUARES_SHARE if self.criterion is Criterion.MIN_MAX else 1.0
+
+    def _gradient(self, activation: Array) -> Array:
+        """Give the derivative of the powers in the cost by each activation (n_m,)."""
+        exponent = EXPONENTS[self.criterion]
+        return self._share() * exponent * self._weight * activation ** (exponent - 1.0)
+
+    def _cost(self, activation: Array, cap: float) -> float:
+        """Give the cost of the activations, without reserves."""
+        powers = self._share() * float(self._weight @ activation ** EXPONENTS[self.criterion])
+        return powers + (cap if self.criterion is Criterion.MIN_MAX else 0.0)
 
     def _checked(self, matrix: Array, torque: Array) -> tuple[Array, Array]:
         """Give the input as contiguous arrays of the right shape and finite numbers."""
