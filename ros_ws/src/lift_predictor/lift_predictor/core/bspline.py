@@ -80,15 +80,10 @@ class RestToRestSpline:
         SplineError
             A time outside [0, 1].
         """
-        # Loads for long, and a node that starts does not need it.
-        from scipy.interpolate import BSpline
-
         s = np.asarray(s, dtype=float)
         if s.size and not (s.min() >= 0.0 and s.max() <= 1.0):
             raise SplineError(f's = {s.min():g} .. {s.max():g}: outside [0, 1]')
-        full = BSpline(self.knots, np.eye(self.n_control), DEGREE)
-        values = np.asarray(full(s, nu=derivative))
-        return values @ self._merge()
+        return _basis(self.knots, DEGREE, s, derivative) @ self._merge()
 
     def fit(self, s: Array, values: Array) -> Array:
         """Free control values nearest to samples in the least-squares sense.
@@ -117,6 +112,28 @@ class RestToRestSpline:
         merge[0, 0] = 1.0
         merge[-1, -1] = 1.0
         return merge
+
+
+def _basis(knots: Array, degree: int, s: Array, derivative: int) -> Array:
+    """All B-splines of a knot vector at s, or a derivative, by Cox-de Boor's recurrence.
+
+    The recurrence divides 0 by 0 at multiple knots; such terms are 0.
+    """
+    n = len(knots) - degree - 1
+    if degree == 0:
+        # The last piece that is not empty holds its right end.
+        piece = np.clip(np.searchsorted(knots, s, side='right') - 1, 0, n - 1)
+        piece = np.minimum(piece, int(np.flatnonzero(np.diff(knots) > 0.0)[-1]))
+        return np.eye(n)[piece]
+    lower = _basis(knots, degree - 1, s, max(derivative - 1, 0))
+    width = knots[degree:] - knots[: n + 1]
+    share = np.divide(1.0, width, out=np.zeros(n + 1), where=width > 0.0)
+    if derivative > 0:
+        scaled = degree * lower * share
+        return scaled[:, :-1] - scaled[:, 1:]
+    rising = (s[:, None] - knots[:n]) * share[:-1] * lower[:, :-1]
+    falling = (knots[degree + 1 :] - s[:, None]) * share[1:] * lower[:, 1:]
+    return np.asarray(rising + falling)
 
 
 def simpson_weights(n_nodes: int) -> Array:

@@ -1,0 +1,99 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""The lift of one person and task as a programme for the solvers (no CasADi needed)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lift_predictor.core.bspline import simpson_weights
+from lift_predictor.core.sagittal.grid import NODE_ROWS, Grid, LiftBounds
+from lift_predictor.core.sagittal.parameters import JOINTS, N_JOINTS, N_SCALARS, LiftParameters
+from lift_predictor.core.solvers.layout import Channel, Group
+from lift_predictor.core.solvers.library import NodeLibrary, load_library
+from lift_predictor.core.solvers.spline_programme import Assembler, SplineProgramme, make_assembler
+
+if TYPE_CHECKING:
+    from lift_predictor.core.solvers.node_function import NodeFunction
+
+Array = NDArray[np.float64]
+
+SOURCES: Final = ('grid.py', 'kernels.py', 'model.py', 'node_functions.py', 'parameters.py')
+"""Modules that define the node functions."""
+
+
+def sagittal_library() -> NodeLibrary:
+    """Load the compiled functions, or compile them."""
+
+    def make() -> list[NodeFunction]:
+        # Imports CasADi, which is not needed when the cache has the library.
+        from lift_predictor.core.sagittal.kernels import kernel_functions
+
+        return kernel_functions()
+
+    here = Path(__file__).parent
+    return load_library('sagittal', [here / name for name in SOURCES], make)
+
+
+def sagittal_groups(grid: Grid) -> list[Group]:
+    """Where the node functions sit: constraints in the order of `Grid.row_names`."""
+    scalars = tuple(range(grid.n_angles, grid.n_angles + N_SCALARS))
+
+    def angles(times: Array, orders: int) -> tuple[Channel]:
+        basis = np.stack([grid.spline.basis(times, order) for order in range(orders)])
+        return (Channel(0, N_JOINTS, basis),)
+
+    nodes, ends, middle = grid.times, np.array([0.0, 1.0]), np.array([0.5])
+    return [
+        Group('node', angles(nodes, 3), scalars, len(NODE_ROWS), simpson_weights(grid.n_nodes)),
+        Group('angle', angles(nodes, 1), (), N_JOINTS, np.zeros(grid.n_nodes)),
+        Group('hand', angles(ends, 1), (), 2, np.zeros(2)),
+        Group('angle', angles(middle, 1), (), N_JOINTS, np.zeros(1)),
+    ]
+
+
+def sagittal_assembler(library: NodeLibrary, grid: Grid) -> Assembler:
+    """Assembler of a grid, for all persons and tasks."""
+    return make_assembler(library, sagittal_groups(grid), grid.n_variables)
+
+
+def sagittal_programme(
+    assembler: Assembler, grid: Grid, parameters: LiftParameters, bounds: LiftBounds
+) -> SplineProgramme:
+    """Programme of one person and task.
+
+    Parameters
+    ----------
+    assembler : Assembler
+        Of the grid.
+    grid : Grid
+        Sizes.
+    parameters : LiftParameters
+        Person and task.
+    bounds : LiftBounds
+        Demands of the task.
+    """
+    return SplineProgramme(
+        assembler,
+        parameters.pack(),
+        bounds.variables(grid),
+        bounds.rows(grid),
+        lambda index: grid.row_names[index],
+        lambda index: variable_name(grid, index),
+    )
+
+
+def variable_name(grid: Grid, index: int) -> str:
+    """Name of a variable's bounds, for messages."""
+    if index >= grid.n_angles:
+        return 'mass of the box'
+    point, joint = divmod(index, N_JOINTS)
+    if point == 0:
+        return f'posture (4.8) of {JOINTS[joint]} at the start'
+    if point == grid.spline.n_free - 1:
+        return f'posture (4.8) of {JOINTS[joint]} at the end'
+    return f'control value {point + 1} of {JOINTS[joint]}'

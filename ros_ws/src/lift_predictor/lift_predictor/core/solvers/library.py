@@ -1,0 +1,163 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Libraries of compiled node functions, loaded with ctypes: neither CasADi nor a compiler needed.
+
+Without a C compiler, or if it fails, the same functions run in CasADi's virtual machine
+(`virtual.py`): slower, same numbers, and `how` says why.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import subprocess
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from lift_predictor.core.solvers import cache
+
+if TYPE_CHECKING:
+    from lift_predictor.core.solvers.node_function import NodeFunction
+
+FLAGS: Final = (
+    '-O2', '-march=native', '-fno-math-errno', '-fno-trapping-math', '-fPIC', '-shared',
+)  # fmt: skip
+VECTOR_LIBM: Final = ('-DVECTOR_LIBM', '-lmvec')
+"""Sine, exponential and so on of glibc's vector library, where there is one."""
+KERNEL: Final = ('lanes.h', 'assembly.c')
+GENERATORS: Final = ('node_function.py', 'emit.py')
+
+
+@dataclass(frozen=True)
+class FunctionFacts:
+    """Sizes of a node function: place in the library, inputs (z, s), parameters, rows."""
+
+    index: int
+    n_in: int
+    n_parameters: int
+    n_rows: int
+
+
+class _CFunction(ctypes.Structure):
+    """The beginning of `struct function` in lanes.h."""
+
+    _fields_ = (
+        ('name', ctypes.c_char_p),
+        *((name, ctypes.c_int) for name in ('n_in', 'n_parameters', 'n_rows')),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class NodeLibrary:
+    """Node functions, compiled or not.
+
+    Attributes
+    ----------
+    functions : dict of FunctionFacts
+        By name.
+    compiled : ctypes.CDLL or None
+        The library.
+    virtual : dict of DerivedFunction
+        CasADi's functions by name if there is no library; empty otherwise.
+    lanes : int
+        Nodes that are evaluated at once.
+    build_time : float
+        Wall time to load or build [s].
+    how : str
+        In words: from the cache, compiled, or in the virtual machine and why.
+    """
+
+    functions: dict[str, FunctionFacts]
+    compiled: ctypes.CDLL | None
+    virtual: dict[str, Any]
+    lanes: int
+    build_time: float
+    how: str
+
+
+def load_library(
+    name: str, sources: Sequence[Path], make: Callable[[], Sequence[NodeFunction]]
+) -> NodeLibrary:
+    """Load node functions from the cache, compiling them first if it has none.
+
+    Parameters
+    ----------
+    name : str
+        What the file is called, before its hash.
+    sources : sequence of Path
+        Modules that define the functions: the library is made anew when one changes.
+    make : callable
+        Builds the functions; called only if they are not in the cache.
+    """
+    start = time.perf_counter()
+    compiler = cache.find_compiler()
+    if compiler is None:
+        return _virtual(make, start, 'no C compiler was found')
+    try:
+        directory = cache.cache_directory()
+        directory.mkdir(parents=True, exist_ok=True)
+        path = directory / f'{name}_{library_hash(sources, compiler)}.so'
+        how = cache.FROM_CACHE
+        if not path.exists() and cache.built_once(
+            path, lambda scratch, built: _compile(make, compiler, scratch, built)
+        ):
+            how = f'functions compiled with {compiler}'
+        library = ctypes.CDLL(str(path))
+    except (OSError, subprocess.SubprocessError) as error:
+        return _virtual(make, start, cache.reason(error))
+    library.lift_function.restype = ctypes.POINTER(_CFunction)
+    functions: dict[str, FunctionFacts] = {}
+    while pointer := library.lift_function(len(functions)):
+        facts = pointer.contents
+        functions[facts.name.decode()] = FunctionFacts(
+            len(functions), facts.n_in, facts.n_parameters, facts.n_rows
+        )
+    return NodeLibrary(
+        functions, library, {}, library.lift_lanes(), time.perf_counter() - start, how
+    )
+
+
+def library_hash(sources: Sequence[Path], compiler: str) -> str:
+    """Hash of everything that goes into a library: functions, kernel, compiler, processor."""
+    here = Path(__file__).parent
+    own = [*(here / name for name in GENERATORS), *(_kernel() / name for name in KERNEL)]
+    facts = (FLAGS, VECTOR_LIBM, cache.processor_features())
+    return cache.content_hash([*sources, *own], facts, compiler)
+
+
+def _kernel() -> Path:
+    return Path(str(files('lift_predictor') / 'data' / 'kernel'))
+
+
+def _compile(
+    make: Callable[[], Sequence[NodeFunction]], compiler: str, scratch: Path, built: Path
+) -> None:
+    # CasADi loads for long and is only needed here.
+    from lift_predictor.core.solvers.emit import library_source
+
+    generated = library_source([function.derived() for function in make()])
+    parts = [(_kernel() / name).read_text(encoding='utf-8') for name in KERNEL]
+    source = scratch / 'library.c'
+    source.write_text('\n'.join((parts[0], generated, *parts[1:])), encoding='utf-8')
+    command = [compiler, *FLAGS, str(source), '-o', str(built)]
+    try:
+        cache.run_compiler([*command, *VECTOR_LIBM, '-lm'])
+        ctypes.CDLL(str(built))
+    except (OSError, subprocess.CalledProcessError):
+        # No vector library on this machine: one lane after the other.
+        cache.run_compiler([*command, '-lm'])
+
+
+def _virtual(
+    make: Callable[[], Sequence[NodeFunction]], start: float, why: str
+) -> NodeLibrary:
+    derived = [function.derived() for function in make()]
+    functions = {
+        f.name: FunctionFacts(i, f.n_in, f.n_parameters, f.n_rows) for i, f in enumerate(derived)
+    }
+    how = f"functions run in CasADi's virtual machine: {why}"
+    virtual = {f.name: f for f in derived}
+    return NodeLibrary(functions, None, virtual, 1, time.perf_counter() - start, how)

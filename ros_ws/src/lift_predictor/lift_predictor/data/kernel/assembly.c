@@ -1,0 +1,383 @@
+// SPDX-FileCopyrightText: 2026 The lift monitor authors
+// SPDX-License-Identifier: Apache-2.0
+// Node functions mapped over the nodes of splines and gathered into a dense programme.
+//
+// A group is one node function at many instants. The instants are sorted into batches of LANES;
+// what a batch needs of the splines is in constant tables made by layout.py:
+//   locals: the variables a batch depends on; channel by channel, control point by control point,
+//           component by component, then the scalars; `global` tells which variable each one is;
+//   basis:  per channel and order of differentiation the weight of each of its control points.
+
+struct group {
+    int function, n_batches, n_channels, n_locals, n_scalars, costless;
+    const int *width, *orders, *active;  // of each channel
+    const int *global;                   // (n_batches, n_locals, LANES)
+    const int *uniform;                  // (n_batches): all lanes have the same variables
+    const double *basis;                 // (n_batches, sum of orders * active, LANES)
+    const double *cost_weight;           // (n_batches, LANES), 0 in unused lanes
+    const int *row;                      // (n_batches, LANES): first row of the node; -1: unused
+    vec *in, *out, *multiplier, *weight, *second;  // work space, by batch where it is kept
+};
+
+struct programme {
+    int n, m, n_groups;
+    struct group *groups;
+    const double *parameters;
+    vec *dense, *half, *local;  // work space of one batch
+    double *square;             // (n, n)
+};
+
+extern const struct function lift_functions[];
+extern const int lift_n_functions;
+
+int lift_lanes(void) { return LANES; }
+
+const struct function *lift_function(int i) {
+    return i < lift_n_functions ? &lift_functions[i] : NULL;
+}
+
+static void *room(size_t count) {
+    size_t bytes = (count * sizeof(vec) + 63) / 64 * 64;
+    void *memory = aligned_alloc(64, bytes ? bytes : 64);
+    if (memory) memset(memory, 0, bytes ? bytes : 64);
+    return memory;
+}
+
+static const struct function *function_of(const struct group *g) {
+    return &lift_functions[g->function];
+}
+
+static int n_out(const struct function *f) { return 1 + f->n_rows + f->n_in + f->n_jacobian; }
+
+void lift_close(struct programme *p) {
+    if (!p) return;
+    for (int k = 0; p->groups && k < p->n_groups; k++) {
+        struct group *g = &p->groups[k];
+        free(g->in), free(g->out), free(g->multiplier), free(g->weight), free(g->second);
+    }
+    free(p->groups), free(p->dense), free(p->half), free(p->local), free(p->square), free(p);
+}
+
+// A programme with work space of its own; the tables must live as long. NULL: no memory.
+struct programme *lift_open(int n, int m, int n_groups, const struct group *groups) {
+    struct programme *p = calloc(1, sizeof *p);
+    if (!p) return NULL;
+    p->n = n, p->m = m, p->n_groups = n_groups;
+    p->groups = calloc(n_groups, sizeof *groups);
+    p->square = room(((size_t)n * n + LANES - 1) / LANES);
+    int in = 1, locals = 1, ok = p->groups && p->square;
+    for (int k = 0; ok && k < n_groups; k++) {
+        struct group *g = &p->groups[k];
+        *g = groups[k];
+        const struct function *f = function_of(g);
+        g->in = room((size_t)g->n_batches * f->n_in);
+        g->out = room((size_t)g->n_batches * n_out(f));
+        g->multiplier = room(1 + f->n_rows);
+        g->weight = room(1 + f->n_rows);
+        g->second = room(f->n_hessian);
+        ok = g->in && g->out && g->multiplier && g->weight && g->second;
+        if (f->n_in > in) in = f->n_in;
+        if (g->n_locals > locals) locals = g->n_locals;
+    }
+    p->dense = room((size_t)in * in);
+    p->half = room((size_t)in * locals);
+    p->local = room((size_t)locals * locals);
+    if (ok && p->dense && p->half && p->local) return p;
+    lift_close(p);
+    return NULL;
+}
+
+void lift_parameters(struct programme *p, const double *parameters) { p->parameters = parameters; }
+
+static int basis_size(const struct group *g) {
+    int size = 0;
+    for (int c = 0; c < g->n_channels; c++) size += g->orders[c] * g->active[c];
+    return size;
+}
+
+// Node inputs from variables.
+static void gather(const struct group *g, int batch, const double *x, vec *in) {
+    const int *global = g->global + (size_t)batch * g->n_locals * LANES;
+    const vec *basis = (const vec *)g->basis + (size_t)batch * basis_size(g);
+    int at = 0, local = 0;
+    for (int c = 0; c < g->n_channels; c++) {
+        int width = g->width[c], active = g->active[c];
+        for (int k = 0; k < active; k++)
+            for (int j = 0; j < width; j++) {
+                vec value;
+                const int *index = global + (local + k * width + j) * LANES;
+                for (int l = 0; l < LANES; l++) value[l] = x[index[l]];
+                for (int o = 0; o < g->orders[c]; o++) {
+                    vec term = basis[o * active + k] * value;
+                    in[at + o * width + j] = k ? in[at + o * width + j] + term : term;
+                }
+            }
+        at += g->orders[c] * width, local += active * width, basis += g->orders[c] * active;
+    }
+    for (int j = 0; j < g->n_scalars; j++)
+        for (int l = 0; l < LANES; l++) in[at + j][l] = x[global[(local + j) * LANES + l]];
+}
+
+// Sum of a vector by node inputs into one by variables.
+static void spread_back(const struct group *g, int batch, const vec *in, double *x) {
+    const int *global = g->global + (size_t)batch * g->n_locals * LANES;
+    const vec *basis = (const vec *)g->basis + (size_t)batch * basis_size(g);
+    int at = 0, local = 0;
+    for (int c = 0; c < g->n_channels; c++) {
+        int width = g->width[c], active = g->active[c];
+        for (int k = 0; k < active; k++)
+            for (int j = 0; j < width; j++) {
+                vec value = {0};
+                const int *index = global + (local + k * width + j) * LANES;
+                for (int o = 0; o < g->orders[c]; o++)
+                    value += basis[o * active + k] * in[at + o * width + j];
+                for (int l = 0; l < LANES; l++) x[index[l]] += value[l];
+            }
+        at += g->orders[c] * width, local += active * width, basis += g->orders[c] * active;
+    }
+    for (int j = 0; j < g->n_scalars; j++)
+        for (int l = 0; l < LANES; l++) x[global[(local + j) * LANES + l]] += in[at + j][l];
+}
+
+static double reduce(const struct group *g, int batch, vec cost, const vec *rows, int n_rows,
+                     double *out) {
+    double sum = 0.0;
+    const double *weight = g->cost_weight + (size_t)batch * LANES;
+    const int *row = g->row + (size_t)batch * LANES;
+    for (int l = 0; l < LANES; l++) {
+        if (row[l] < 0) continue;
+        if (weight[l] != 0.0) sum += weight[l] * cost[l];
+        for (int r = 0; r < n_rows; r++) out[row[l] + r] = rows[r][l];
+    }
+    return sum;
+}
+
+// Objective and rows.
+double lift_values(struct programme *p, const double *x, double *rows) {
+    double objective = 0.0;
+    for (int k = 0; k < p->n_groups; k++) {
+        struct group *g = &p->groups[k];
+        const struct function *f = function_of(g);
+        vec in[f->n_in + 1], out[1 + f->n_rows];
+        for (int b = 0; b < g->n_batches; b++) {
+            gather(g, b, x, in);
+            f->value(in, p->parameters, out);
+            objective += reduce(g, b, out[0], out + 1, f->n_rows, rows);
+        }
+    }
+    return objective;
+}
+
+// Objective, rows, gradient; the Jacobian is kept for the functions below.
+double lift_first(struct programme *p, const double *x, double *rows, double *gradient) {
+    double objective = 0.0;
+    memset(gradient, 0, p->n * sizeof *gradient);
+    for (int k = 0; k < p->n_groups; k++) {
+        struct group *g = &p->groups[k];
+        const struct function *f = function_of(g);
+        vec slope[f->n_in + 1];
+        for (int b = 0; b < g->n_batches; b++) {
+            vec *in = g->in + (size_t)b * f->n_in, *out = g->out + (size_t)b * n_out(f);
+            vec weight = *((const vec *)g->cost_weight + b);
+            gather(g, b, x, in);
+            f->first(in, p->parameters, out);
+            objective += reduce(g, b, out[0], out + 1, f->n_rows, rows);
+            for (int i = 0; i < f->n_in; i++) slope[i] = weight * out[1 + f->n_rows + i];
+            if (!g->costless) spread_back(g, b, slope, gradient);
+        }
+    }
+    return objective;
+}
+
+// Jacobian times a step.
+void lift_times(struct programme *p, const double *step, double *rows) {
+    for (int k = 0; k < p->n_groups; k++) {
+        struct group *g = &p->groups[k];
+        const struct function *f = function_of(g);
+        vec in[f->n_in + 1], out[f->n_rows + 1];
+        for (int b = 0; b < g->n_batches; b++) {
+            const vec *slope = g->out + (size_t)b * n_out(f) + 1 + f->n_rows + f->n_in;
+            gather(g, b, step, in);
+            memset(out, 0, sizeof out);
+            for (int i = 0; i < f->n_jacobian; i++)
+                out[f->jacobian_row[i]] += slope[i] * in[f->jacobian_column[i]];
+            reduce(g, b, out[0], out, f->n_rows, rows);
+        }
+    }
+}
+
+static void fetch(const struct group *g, int batch, int n_rows, const double *values, vec *out) {
+    const int *row = g->row + (size_t)batch * LANES;
+    for (int l = 0; l < LANES; l++)
+        for (int r = 0; r < n_rows; r++) out[r][l] = row[l] < 0 ? 0.0 : values[row[l] + r];
+}
+
+// Transposed Jacobian times multipliers.
+void lift_transposed(struct programme *p, const double *multiplier, double *out) {
+    memset(out, 0, p->n * sizeof *out);
+    for (int k = 0; k < p->n_groups; k++) {
+        struct group *g = &p->groups[k];
+        const struct function *f = function_of(g);
+        vec in[f->n_in + 1];
+        for (int b = 0; b < g->n_batches; b++) {
+            const vec *slope = g->out + (size_t)b * n_out(f) + 1 + f->n_rows + f->n_in;
+            fetch(g, b, f->n_rows, multiplier, g->multiplier);
+            memset(in, 0, sizeof in);
+            for (int i = 0; i < f->n_jacobian; i++)
+                in[f->jacobian_column[i]] += slope[i] * g->multiplier[f->jacobian_row[i]];
+            spread_back(g, b, in, out);
+        }
+    }
+}
+
+// Dense Jacobian rows of the listed rows, (count, n), which must be sorted.
+void lift_dense_rows(struct programme *p, const int *wanted, int count, double *out) {
+    memset(out, 0, (size_t)count * p->n * sizeof *out);
+    for (int k = 0; k < p->n_groups; k++) {
+        struct group *g = &p->groups[k];
+        const struct function *f = function_of(g);
+        vec in[f->n_in + 1];
+        for (int b = 0; b < g->n_batches; b++) {
+            const vec *slope = g->out + (size_t)b * n_out(f) + 1 + f->n_rows + f->n_in;
+            const int *row = g->row + (size_t)b * LANES;
+            for (int l = 0; l < LANES; l++) {
+                if (row[l] < 0) continue;
+                int low = 0, high = count;
+                while (low < high) {
+                    int middle = (low + high) / 2;
+                    if (wanted[middle] < row[l]) low = middle + 1; else high = middle;
+                }
+                for (; low < count && wanted[low] < row[l] + f->n_rows; low++) {
+                    memset(in, 0, sizeof in);
+                    for (int i = 0; i < f->n_jacobian; i++)
+                        if (f->jacobian_row[i] == wanted[low] - row[l])
+                            in[f->jacobian_column[i]][l] = slope[i][l];
+                    spread_back(g, b, in, out + (size_t)low * p->n);
+                }
+            }
+        }
+    }
+}
+
+// Node matrix (n_in, n_in), lower triangle: Hessian of the Lagrangian and weighted squares.
+static void node_matrix(struct programme *p, struct group *g, int b, vec *dense) {
+    const struct function *f = function_of(g);
+    const vec *in = g->in + (size_t)b * f->n_in;
+    const vec *slope = g->out + (size_t)b * n_out(f) + 1 + f->n_rows + f->n_in;
+    int n = f->n_in;
+    memset(dense, 0, (size_t)n * n * sizeof *dense);
+    if (f->n_hessian) {
+        f->second(in, p->parameters, g->multiplier, g->second);
+        for (int i = 0; i < f->n_hessian; i++)
+            dense[f->hessian_row[i] * n + f->hessian_column[i]] = g->second[i];
+    }
+    for (int first = 0, last; first < f->n_jacobian; first = last) {
+        int row = f->jacobian_row[first];
+        for (last = first; last < f->n_jacobian && f->jacobian_row[last] == row; last++) {
+            vec scaled = g->weight[row] * slope[last];
+            vec *line = dense + f->jacobian_column[last] * n;
+            for (int i = first; i <= last; i++) line[f->jacobian_column[i]] += scaled * slope[i];
+        }
+    }
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < i; j++) dense[j * n + i] = dense[i * n + j];
+}
+
+// local = T' dense T with the spline's T from locals to node inputs; the lower triangle.
+static void transform(const struct group *g, int batch, int n_in, const vec *dense, vec *half,
+                      vec *local) {
+    const vec *all = (const vec *)g->basis + (size_t)batch * basis_size(g);
+    int n = g->n_locals;
+    for (int i = 0; i < n_in; i++) {
+        const vec *basis = all, *line = dense + i * n_in;
+        int at = 0, to = 0;
+        for (int c = 0; c < g->n_channels; c++) {
+            int width = g->width[c], active = g->active[c], orders = g->orders[c];
+            for (int k = 0; k < active; k++)
+                for (int j = 0; j < width; j++) {
+                    vec sum = basis[k] * line[at + j];
+                    for (int o = 1; o < orders; o++)
+                        sum += basis[o * active + k] * line[at + o * width + j];
+                    half[i * n + to + k * width + j] = sum;
+                }
+            at += orders * width, to += active * width, basis += orders * active;
+        }
+        for (int j = 0; j < g->n_scalars; j++) half[i * n + to + j] = line[at + j];
+    }
+    const vec *basis = all;
+    int at = 0, to = 0;
+    for (int c = 0; c < g->n_channels; c++) {
+        int width = g->width[c], active = g->active[c], orders = g->orders[c];
+        for (int k = 0; k < active; k++)
+            for (int j = 0; j < width; j++) {
+                int row = to + k * width + j;
+                for (int i = 0; i <= row; i++) {
+                    vec sum = basis[k] * half[(at + j) * n + i];
+                    for (int o = 1; o < orders; o++)
+                        sum += basis[o * active + k] * half[(at + o * width + j) * n + i];
+                    local[row * n + i] = sum;
+                }
+            }
+        at += orders * width, to += active * width, basis += orders * active;
+    }
+    for (int j = 0; j < g->n_scalars; j++)
+        for (int i = 0; i <= to + j; i++) local[(to + j) * n + i] = half[(at + j) * n + i];
+}
+
+static void scatter(const struct group *g, int batch, const vec *local, double *out, int n) {
+    const int *global = g->global + (size_t)batch * g->n_locals * LANES;
+    for (int i = 0; i < g->n_locals; i++)
+        for (int j = 0; j <= i; j++) {
+            vec value = local[i * g->n_locals + j];
+            const int *row = global + i * LANES, *column = global + j * LANES;
+            if (g->uniform[batch]) {
+                double sum = 0.0;
+                for (int l = 0; l < LANES; l++) sum += value[l];
+                out[(size_t)row[0] * n + column[0]] += sum;
+            } else {
+                for (int l = 0; l < LANES; l++) out[(size_t)row[l] * n + column[l]] += value[l];
+            }
+        }
+}
+
+// sigma Hess f + sum multiplier_i Hess g_i + sum weight_i J_i' J_i at the last point of lift_first.
+void lift_condensed(struct programme *p, double sigma, const double *multiplier,
+                    const double *weight, double *out) {
+    double *square = p->square;
+    int n = p->n;
+    memset(square, 0, (size_t)n * n * sizeof *square);
+    for (int k = 0; k < p->n_groups; k++) {
+        struct group *g = &p->groups[k];
+        const struct function *f = function_of(g);
+        for (int b = 0; b < g->n_batches; b++) {
+            g->multiplier[0] = sigma * *((const vec *)g->cost_weight + b);
+            fetch(g, b, f->n_rows, multiplier, g->multiplier + 1);
+            fetch(g, b, f->n_rows, weight, g->weight);
+            node_matrix(p, g, b, p->dense);
+            transform(g, b, f->n_in, p->dense, p->half, p->local);
+            scatter(g, b, p->local, square, n);
+        }
+    }
+    // Each pair was added once, on whichever side of the diagonal.
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j <= i; j++) {
+            double sum = square[(size_t)i * n + j] + (i == j ? 0.0 : square[(size_t)j * n + i]);
+            out[(size_t)i * n + j] = out[(size_t)j * n + i] = sum;
+        }
+}
+
+// One function at n instants: in (n, n_in), out (n, 1 + n_rows), cost first.
+void lift_evaluate(int function, int n, const double *in, const double *parameters, double *out) {
+    const struct function *f = &lift_functions[function];
+    vec block[f->n_in + 1], result[1 + f->n_rows];
+    for (int start = 0; start < n; start += LANES) {
+        for (int l = 0; l < LANES; l++) {
+            int at = start + l < n ? start + l : n - 1;
+            for (int i = 0; i < f->n_in; i++) block[i][l] = in[(size_t)at * f->n_in + i];
+        }
+        f->value(block, parameters, result);
+        for (int l = 0; l < LANES && start + l < n; l++)
+            for (int r = 0; r <= f->n_rows; r++)
+                out[(size_t)(start + l) * (1 + f->n_rows) + r] = result[r][l];
+    }
+}
