@@ -46,13 +46,19 @@ class Plan:
     task: LiftTask2D
     pairs: tuple[Array, ...]
 
-    def starts(self, spline: RestToRestSpline) -> tuple[Start, ...]:
-        """Return initial guesses: for each pair a smooth step and an arc clear of the body."""
-        starts = []
+    def starts(self, spline: RestToRestSpline, limit: int | None = None) -> tuple[Start, ...]:
+        """Return initial guesses, at most `limit`.
+
+        For each pair of end postures there is a smooth step and an arc clear of the body; first
+        come the steps and arcs of the first pair, then those of the next.
+        """
+        starts: list[Start] = []
         for number, ends in enumerate(self.pairs, 1):
+            if limit is not None and len(starts) >= limit:
+                break
             made = make_starts(replace(self.task, ends=ends), spline)
             starts += [replace(start, name=f'{start.name} {number}') for start in made]
-        return tuple(starts)
+        return tuple(starts[:limit])
 
 
 def build_plan(

@@ -167,6 +167,8 @@ class LiftSolver:
         violation, index = _largest_violation(values, low, high)
         multipliers = np.concatenate((lam_x, lam_g))
         slack = np.where(multipliers > 0.0, high - values, values - low)
+        # A bound that is infinite must have no multiplier: what is left counts by itself.
+        slack = np.where(np.isfinite(slack), slack, 1.0)
         active = multipliers != 0.0
         complementarity = np.abs(multipliers[active] * slack[active])
         return Optimum(
