@@ -11,6 +11,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from human_model.frames import matrix_from_quaternion
 from human_model.skeleton_3d import Skeleton3D
 from lifting_bringup.bags.importer import ImportOptions, import_recording
 from motion_tracker.core.filters import derivatives, zero_phase
@@ -71,10 +72,16 @@ def squats(squats_files, bags, tracked, tmp_path_factory):
         analyzer.analyze(lift.lift.motion, lift.lift.lift_id, 'measured', lift.status)
         for lift in found.lifts
     ]
-    whole = analyzer.analyze(recording(found), '', 'measured')
+    motion = recording(found)
+    whole = analyzer.analyze(motion, '', 'measured')
     live = [analyzer.analyze(frame.motion) for frame in found.frames]
     return SimpleNamespace(
-        found=found, analyses=analyses, whole=whole, live=live, files=squats_files
+        found=found,
+        analyses=analyses,
+        motion=motion,
+        whole=whole,
+        live=live,
+        files=squats_files,
     )
 
 
@@ -113,19 +120,30 @@ def test_net_l5_s1_moment_from_above_against_below(squats):
     assert np.sqrt(np.mean(np.sum(difference**2, axis=1))) <= MOMENT_LIMIT
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason='17.8 N m: the difference is an offset of 14 N m forwards also in standing (as if the '
-    'centres of pressure were 24 mm off), greatest when bent; inverse dynamics by OpenSim 4.6 '
-    'leaves 15 N m at the pelvis of this recording too',
-)
 def test_net_l5_s1_moment_while_rising(squats):
-    """The same limit over the five rises alone, without the standing between them."""
-    rows = [
-        np.sum((analysis.net_moment_top_down - analysis.net_moment_bottom_up) ** 2, axis=1)
-        for analysis in squats.analyses
-    ]
-    assert np.sqrt(np.mean(np.concatenate(rows))) <= MOMENT_LIMIT
+    """The same limit in each of the five rises alone, without the standing between them.
+
+    The plates' place was taken from standing (`plate_registration` of the subject file), so the
+    rises, from the deepest posture on, are a test of it.
+    """
+    for analysis in squats.analyses:
+        difference = analysis.net_moment_top_down - analysis.net_moment_bottom_up
+        assert np.sqrt(np.mean(np.sum(difference**2, axis=1))) <= MOMENT_LIMIT
+
+
+def test_what_was_missing_belongs_to_the_plates_not_to_the_trunk(squats):
+    """It stays what it is in standing where the trunk leans by 45 degrees and more.
+
+    Some 21 mm were missing in standing. Had they been those of the trunk's centre of mass, they
+    would turn with the trunk, and 21 (1 - cos 50) = 8 mm and what is missing now would be left.
+    """
+    motion, whole = squats.motion, squats.whole
+    upwards = matrix_from_quaternion(motion.frame('thorax'))[:, 2, 2]
+    difference = whole.net_moment_top_down - whole.net_moment_bottom_up
+    missing = -difference[:, 1] / motion.ground_force[:, :, 2].sum(axis=1)
+    leaning = upwards <= np.cos(np.radians(45.0))
+    assert leaning.sum() > 100
+    assert abs(missing[leaning].mean()) < 6e-3
 
 
 def test_peak_force_on_l5_s1_against_opensim(squats):

@@ -194,6 +194,7 @@ def test_real_squats_import_with_one_call(tmp_path):
     assert 'ground_force_1: right foot' in said
     assert 'ground_force_2: left foot' in said
     assert '60.1 kg' in said
+    assert 'Both plates were moved by +21 mm forward and +3 mm to the left' in said
     with BagReader(report.bag) as bag:
         subject = next(bag.messages(['/subject']))[2]
         first = next(bag.messages(['/markers']))[2]

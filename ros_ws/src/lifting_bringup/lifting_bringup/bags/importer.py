@@ -25,7 +25,12 @@ from lifting_bringup.bags.messages import MarkerCalibration, subject_message, ta
 from lifting_bringup.bags.opensim_forces import read_trc_and_forces
 from lifting_bringup.bags.recording import SIDES, Analog, Array, Plate, RawRecording, Recording
 from lifting_bringup.bags.static_trial import calibrate_markers
-from lifting_bringup.bags.subject_file import SubjectFile, TaskEntry, read_subject_file
+from lifting_bringup.bags.subject_file import (
+    QUIET_STANDING,
+    SubjectFile,
+    TaskEntry,
+    read_subject_file,
+)
 
 _EMG_BLOCK_SECONDS = 0.01
 
@@ -153,6 +158,11 @@ def import_recording(options: ImportOptions) -> ImportReport:
         )
         calibration, said = calibrate_markers(trial, entry)
     recording = replace(recording, statements=(*recording.statements, *said))
+    if entry.recording.plate_registration == QUIET_STANDING:
+        # The models it asks take a second or two to load.
+        from lifting_bringup.bags.plate_registration import register_plates
+
+        recording = register_plates(recording, entry, calibration)
     return write_bag(options, entry, recording, calibration)
 
 

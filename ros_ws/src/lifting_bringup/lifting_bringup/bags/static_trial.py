@@ -9,12 +9,31 @@ from human_model.subject import Subject
 from lifting_bringup.bags.exceptions import StaticTrialError, SubjectFileError
 from lifting_bringup.bags.messages import MarkerCalibration
 from lifting_bringup.bags.recording import Recording
-from lifting_bringup.bags.subject_file import SubjectFile
+from lifting_bringup.bags.subject_file import SubjectEntry, SubjectFile
 from motion_tracker.core.calibration import calibrate
 from motion_tracker.core.errors import MotionTrackerError
 from motion_tracker.core.marker_set import load_marker_set
 
 _SEX = {1: 'male', 2: 'female'}
+
+
+def person(who: SubjectEntry) -> Subject:
+    """Return the person of a subject file as the models know persons.
+
+    Raises
+    ------
+    HumanModelError
+        A measure is out of the models' range.
+    """
+    return Subject(
+        who.pseudonym,
+        _SEX[who.sex],
+        who.mass,
+        who.stature,
+        who.age,
+        who.strength_z,
+        dict(who.segment_lengths),
+    )
 
 
 def calibrate_markers(
@@ -41,18 +60,9 @@ def calibrate_markers(
         raise SubjectFileError(
             f'{entry.path}: recording.marker_set: is missing, but a static trial is given'
         )
-    who = entry.subject
     try:
         marker_set = load_marker_set(name)
-        subject = Subject(
-            who.pseudonym,
-            _SEX[who.sex],
-            who.mass,
-            who.stature,
-            who.age,
-            who.strength_z,
-            dict(who.segment_lengths),
-        )
+        subject = person(entry.subject)
         known = [i for i, marker in enumerate(trial.names) if marker in marker_set.names]
         found = calibrate(
             marker_set, [trial.names[i] for i in known], trial.markers[:, known], subject

@@ -32,6 +32,7 @@
       roles: {HEEL_R: heel right}    # for marker names the importer does not know
       box_markers: {BOX1: [x, y, z]} # three or more, m from the box centre, box axes
       emg: [EMG1, EMG2]        # analog channels of a C3D file to keep; else all but the plates
+      plate_registration: as_recorded  # or quiet_standing: plates are moved, see there
 """
 
 from __future__ import annotations
@@ -51,6 +52,10 @@ _RANGES = {'mass': (30.0, 250.0), 'stature': (1.2, 2.3), 'age': (16.0, 100.0)}
 _SEXES = {'male': 1, 'female': 2}
 _COUPLINGS = {'good': 1, 'fair': 2, 'poor': 3}
 _NAN3 = (math.nan, math.nan, math.nan)
+
+
+#: Where the plates are: as the file says, or as quiet standing says (see `plate_registration`).
+AS_RECORDED, QUIET_STANDING = 'as_recorded', 'quiet_standing'
 
 
 @dataclass(frozen=True)
@@ -94,6 +99,7 @@ class RecordingEntry:
     roles: Mapping[str, str] = field(default_factory=dict)
     box_markers: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
     emg: tuple[str, ...] | None = None
+    plate_registration: str = AS_RECORDED
 
 
 @dataclass(frozen=True)
@@ -256,12 +262,19 @@ def _recording(section: _Section) -> RecordingEntry:
     box = section.mapping('box_markers')
     if box and len(box) < 3:
         raise section.error('box_markers', f'{len(box)} markers do not fix a box; 3 are needed')
+    registration = section.text('plate_registration', AS_RECORDED)
+    if registration not in (AS_RECORDED, QUIET_STANDING):
+        raise section.error(
+            'plate_registration',
+            f'{registration!r} is neither {AS_RECORDED} nor {QUIET_STANDING}',
+        )
     entry = RecordingEntry(
         marker_set=section.text('marker_set', ''),
         rename=section.texts('rename'),
         roles=section.texts('roles'),
         box_markers={k: section.as_triple(f'box_markers.{k}', v) for k, v in box.items()},
         emg=None if emg is None else tuple(str(name) for name in emg),
+        plate_registration=registration,
     )
     section.finish()
     return entry
