@@ -1,0 +1,198 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Node functions too large for written-out derivatives: sweeps of directional derivatives.
+
+The inputs are divided into sets. Columns of the Jacobian and Hessian are directional derivatives
+(of the function, and of the gradient of its Lagrangian), one code for all directions of a set that
+runs once for each. What does not depend on the direction is computed once for all sweeps, and a set
+that touches little of the function (accelerations) has little code. A sweep of the Hessian leaves
+out the rows of earlier sets, which symmetry gives.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from lift_predictor.core.solvers.node_function import DerivedFunction, NodeFunction
+from lift_predictor.core.solvers.straight_line import passes
+
+
+@dataclass(frozen=True, eq=False)
+class SweptFunction(NodeFunction):
+    """A node function with derivatives by sweeps.
+
+    Attributes
+    ----------
+    sets : tuple of tuple of int
+        Partition of the inputs (z, s); sets whose directions touch most of the function first.
+    """
+
+    sets: tuple[tuple[int, ...], ...] = ()
+
+    def derived(self) -> DerivedFunction:
+        """Return C source of the sweeps; CasADi's functions are made when asked for."""
+        return SweptDerivatives(self)  # type: ignore[return-value]
+
+
+class SweptDerivatives:
+    """`DerivedFunction` of a `SweptFunction`.
+
+    Parameters
+    ----------
+    function : SweptFunction
+        The function; all its inputs are in its sets.
+    """
+
+    def __init__(self, function: SweptFunction) -> None:
+        self.function, self.name = function, function.name
+        self._zs = ca.vertcat(function.z, function.s)
+        self._out = ca.vertcat(ca.SX(function.cost), ca.SX(function.rows))
+        self.value = ca.Function('value', [self._zs, function.p], [self._out])
+        self.n_in, self.n_parameters = int(self._zs.numel()), int(function.p.numel())
+        self.n_rows = int(self._out.numel()) - 1
+        if sorted(i for part in function.sets for i in part) != list(range(self.n_in)):
+            raise ValueError(f'{self.name}: the sets are no partition of {self.n_in} inputs')
+        row, column = _triplet(self.value.jac_sparsity(0, 0))
+        keep = row > 0
+        order = np.lexsort((column[keep], row[keep]))
+        self.jacobian_row = (row[keep] - 1)[order].astype(np.int32)
+        self.jacobian_column = column[keep][order].astype(np.int32)
+        self._multiplier = ca.SX.sym('multiplier', 1 + self.n_rows)
+        self._gradient = ca.gradient(ca.dot(self._multiplier, self._out), self._zs)
+        gradient = ca.Function('g', [self._zs, function.p, self._multiplier], [self._gradient])
+        row, column = _triplet(gradient.jac_sparsity(0, 0))
+        keep = row >= column
+        self.hessian_row = row[keep].astype(np.int32)
+        self.hessian_column = column[keep].astype(np.int32)
+
+    @cached_property
+    def _written_out(self) -> DerivedFunction:
+        f = self.function
+        return NodeFunction(f.name, f.z, f.s, f.p, f.rows, f.cost).derived()
+
+    @property
+    def first(self) -> Any:
+        """Written out, for the virtual machine; its nonzeros are in the same order."""
+        return self._written_out.first
+
+    @property
+    def second(self) -> Any:
+        """Written out, for the virtual machine."""
+        return self._written_out.second
+
+    def source(self) -> str:
+        """C code of the functions NAME_value, NAME_first and NAME_second."""
+        sets = self.function.sets
+        zs, p = self._zs, self.function.p
+        value = _program(self.value, f'{self.name}_value', 2)
+        seeds = [ca.SX.sym('seed', len(part)) for part in sets]
+        sweeps = [
+            ca.jtimes(self._out, ca.vertcat(*(zs[i] for i in part)), seed)
+            for part, seed in zip(sets, seeds, strict=True)
+        ]
+        first = ca.Function('first', [zs, p, *seeds], [self._out, *sweeps])
+        ahead = [[i for part in sets[k:] for i in part] for k in range(len(sets))]
+        turns = [
+            ca.jtimes(
+                ca.vertcat(*(self._gradient[i] for i in ahead[k])),
+                ca.vertcat(*(zs[i] for i in sets[k])),
+                seeds[k],
+            )
+            for k in range(len(sets))
+        ]
+        second = ca.Function('second', [zs, p, self._multiplier, *seeds], turns)
+        parts = [
+            value,
+            _call_value(self.name),
+            _program(first, f'{self.name}_first', 2, has_values=True),
+            self._call_first(),
+            _program(second, f'{self.name}_second', 3, has_values=False),
+            self._call_second(ahead),
+        ]
+        return '\n'.join(parts)
+
+    def _call_first(self) -> str:
+        name, sets = self.name, self.function.sets
+        order = np.lexsort((self.jacobian_row, self.jacobian_column))
+        begin = np.searchsorted(self.jacobian_column[order], np.arange(self.n_in + 1))
+        lines = [
+            _table(f'{name}_by_column', order), _table(f'{name}_column_begin', begin),
+            *(_table(f'{name}_set_{k}', part) for k, part in enumerate(sets)),
+            f'static void {name}_first(const vec *in, const double *p, vec *out) {{',
+            f'    vec base[{name}_first_base_size], t[{1 + self.n_rows}];',
+            f'    {name}_first_base(in, p, NULL, NULL, base, out);',
+        ]  # fmt: skip
+        for k, part in enumerate(sets):
+            lines.append(f"""    {{
+        vec seed[{len(part)}] = {{{{0}}}};
+        for (int j = 0; j < {len(part)}; j++) {{
+            int column = {name}_set_{k}[j];
+            seed[j] = spread(1.0);
+            {name}_first_{k}(in, p, NULL, seed, base, t);
+            seed[j] = spread(0.0);
+            out[{1 + self.n_rows} + column] = t[0];
+            for (int i = {name}_column_begin[column]; i < {name}_column_begin[column + 1]; i++) {{
+                int at = {name}_by_column[i];
+                out[{1 + self.n_rows + self.n_in} + at] = t[1 + {name}_jacobian_row[at]];
+            }}
+        }}
+    }}""")
+        return '\n'.join((*lines, '}'))
+
+    def _call_second(self, ahead: list[list[int]]) -> str:
+        name, sets, n = self.name, self.function.sets, self.n_in
+        place = np.full((n, n), -1)
+        place[self.hessian_row, self.hessian_column] = np.arange(len(self.hessian_row))
+        lines = [
+            _table(f'{name}_hessian_place', place.ravel()),
+            *(_table(f'{name}_ahead_{k}', part) for k, part in enumerate(ahead)),
+            f'static void {name}_second(const vec *in, const double *p, const vec *multiplier, '
+            'vec *out) {',
+            f'    vec base[{name}_second_base_size], t[{n}];',
+            f'    {name}_second_base(in, p, multiplier, NULL, base, NULL);',
+        ]
+        for k, part in enumerate(sets):
+            lines.append(f"""    {{
+        vec seed[{len(part)}] = {{{{0}}}};
+        for (int j = 0; j < {len(part)}; j++) {{
+            int column = {name}_set_{k}[j];
+            seed[j] = spread(1.0);
+            {name}_second_{k}(in, p, multiplier, seed, base, t);
+            seed[j] = spread(0.0);
+            for (int i = 0; i < {len(ahead[k])}; i++) {{
+                int row = {name}_ahead_{k}[i];
+                int at = {name}_hessian_place[row > column ? row * {n} + column
+                                                           : column * {n} + row];
+                if (at >= 0) out[at] = t[i];
+            }}
+        }}
+    }}""")
+        return '\n'.join((*lines, '}'))
+
+
+def _triplet(sparsity: Any) -> tuple[Any, Any]:
+    row, column = sparsity.get_triplet()
+    return np.array(row), np.array(column)
+
+
+def _table(name: str, values: Sequence[int] | Any) -> str:
+    numbers = ', '.join(str(int(i)) for i in values) or '0'
+    return f'static const int {name}[] = {{{numbers}}};'
+
+
+def _call_value(name: str) -> str:
+    return (
+        f'static void {name}_value(const vec *in, const double *p, vec *out) {{\n'
+        f'    {name}_value_base(in, p, NULL, NULL, NULL, out);\n}}'
+    )
+
+
+def _program(function: Any, name: str, n_fixed: int, has_values: bool = True) -> str:
+    """C code of a function whose inputs after the first `n_fixed` are seeds of sweeps."""
+    return passes(function, name, n_fixed, has_values)

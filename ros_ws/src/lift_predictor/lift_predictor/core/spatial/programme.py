@@ -1,0 +1,106 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""The spatial lift of one person and task as a programme for the solvers (no CasADi needed)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lift_predictor.core.bspline import simpson_weights
+from lift_predictor.core.solvers.layout import Channel, Group
+from lift_predictor.core.solvers.library import NodeLibrary, load_library
+from lift_predictor.core.solvers.spline_programme import Assembler, SplineProgramme, make_assembler
+from lift_predictor.core.spatial.grid import LIMITED, NODE_ROWS, SpatialBounds, SpatialGrid
+from lift_predictor.core.spatial.parameters import N_SCALARS, N_SPLINED, SpatialParameters
+
+if TYPE_CHECKING:
+    from lift_predictor.core.solvers.node_function import NodeFunction
+
+Array = NDArray[np.float64]
+
+SOURCES: Final = (
+    'spatial/body.py',
+    'spatial/dynamics.py',
+    'spatial/grid.py',
+    'spatial/kernels.py',
+    'spatial/parameters.py',
+    'spatial/rotations.py',
+    'spatial/stance.py',
+    'spatial/stance_motion.py',
+    'sagittal/model.py',
+    'solvers/straight_line.py',
+    'solvers/sweeps.py',
+)
+"""Modules that define the node functions."""
+
+
+def spatial_library() -> NodeLibrary:
+    """Load the compiled functions, or compile them (half a minute)."""
+
+    def make() -> list[NodeFunction]:
+        # Imports CasADi, which is not needed when the cache has the library.
+        from lift_predictor.core.spatial.kernels import kernel_functions
+
+        return kernel_functions()
+
+    core = Path(__file__).parents[1]
+    return load_library('spatial', [core / name for name in SOURCES], make)
+
+
+def spatial_assembler(library: NodeLibrary, grid: SpatialGrid) -> Assembler:
+    """Assembler of a grid, for all persons and tasks."""
+
+    def splines(times: Array, orders: int) -> tuple[Channel]:
+        basis = np.stack([grid.spline.basis(times, order) for order in range(orders)])
+        return (Channel(0, N_SPLINED, basis),)
+
+    weights = simpson_weights(grid.n_nodes)
+    scalars = tuple(range(grid.n_splined, grid.n_splined + N_SCALARS))
+    groups = [
+        Group('node', splines(grid.times, 3), scalars, len(NODE_ROWS), weights),
+        Group('angle', splines(grid.times, 1), (), len(LIMITED), np.zeros(grid.n_nodes)),
+        Group('hand', splines(np.array([0.0, 1.0]), 1), (), 6, np.zeros(2)),
+    ]
+    return make_assembler(library, groups, grid.n_variables)
+
+
+def posture_assembler(library: NodeLibrary) -> Assembler:
+    """Assembler of one posture at rest: the same functions at one instant without motion."""
+    still = np.array([1.0, 0.0, 0.0]).reshape(3, 1, 1)
+    scalars = (N_SPLINED, N_SPLINED + 1)
+    groups = [
+        Group('node', (Channel(0, N_SPLINED, still),), scalars, len(NODE_ROWS), np.ones(1)),
+        Group('angle', (Channel(0, N_SPLINED, still[:1]),), (), len(LIMITED), np.zeros(1)),
+        Group('hand', (Channel(0, N_SPLINED, still[:1]),), (), 6, np.zeros(1)),
+    ]
+    return make_assembler(library, groups, N_SPLINED + N_SCALARS)
+
+
+def spatial_programme(
+    assembler: Assembler, grid: SpatialGrid, parameters: SpatialParameters, bounds: SpatialBounds
+) -> SplineProgramme:
+    """Programme of one person and task.
+
+    Parameters
+    ----------
+    assembler : Assembler
+        Of the grid.
+    grid : SpatialGrid
+        Sizes.
+    parameters : SpatialParameters
+        Person and task.
+    bounds : SpatialBounds
+        Demands of the task.
+    """
+    return SplineProgramme(
+        assembler,
+        parameters.pack(),
+        bounds.variables(grid),
+        bounds.rows(),
+        lambda index: grid.row_names[index],
+        grid.variable_name,
+    )
