@@ -118,6 +118,24 @@ class MuscleAnalyzer:
             )
         return self._streams[key]
 
+    def new_transfer(self, skeleton: str) -> MotionTransfer:
+        """
+        Give a transfer of its own from a skeleton to the subject's model, as `analyze` uses it.
+
+        Parameters
+        ----------
+        skeleton
+            Its name, as in `BodyMotion.skeleton`.
+
+        Raises
+        ------
+        NotConfiguredError
+            If no subject has been given.
+        """
+        if self._subject is None:
+            raise NotConfiguredError('new_transfer: no subject yet, call configure first')
+        return MotionTransfer(self._model, _SKELETONS[skeleton].of(self._subject))
+
     def analyze(
         self,
         motion: BodyMotion,
