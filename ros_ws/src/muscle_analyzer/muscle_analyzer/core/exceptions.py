@@ -45,3 +45,15 @@ class ModelFileError(MuscleAnalyzerError):
 
 class NotConfiguredError(MuscleAnalyzerError):
     """A result was asked for before a subject was given."""
+
+
+class StorageError(MuscleAnalyzerError):
+    """An OpenSim table over time cannot be read or written; names file, line and column."""
+
+
+class ModelWriteError(MuscleAnalyzerError):
+    """A model holds something that cannot be written as an `.osim` file."""
+
+
+class OpenSimError(MuscleAnalyzerError):
+    """OpenSim is not there, or it could not run on the exported files."""

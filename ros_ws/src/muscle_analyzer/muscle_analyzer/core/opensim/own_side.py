@@ -1,0 +1,163 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""The own side of a comparison: the same functions as in the analysis, step by step.
+
+The analysis gives only what its users need; the comparison looks at every step between, and puts
+OpenSim's muscle forces into them to tell differences of one step from those of the steps before.
+Everything is in OpenSim's ground axes.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from muscle_analyzer.core.analyzer_options import MuscleAnalyzerOptions
+from muscle_analyzer.core.disc_frame import disc_option, disc_rotation
+from muscle_analyzer.core.exceptions import OpenSimError
+from muscle_analyzer.core.inverse_dynamics import inverse_dynamics, wrench_at
+from muscle_analyzer.core.joint_reaction import joint_reactions
+from muscle_analyzer.core.kinematics import BodyState, body_jacobians, forward_kinematics
+from muscle_analyzer.core.load_solver import KNEES, L5, THORAX, LoadSolver
+from muscle_analyzer.core.muscle_curves import MuscleParameters, MuscleState
+from muscle_analyzer.core.muscle_path_table import path_table
+from muscle_analyzer.core.muscle_paths import MusclePaths, body_wrenches, muscle_paths
+from muscle_analyzer.core.opensim.answers import Answer
+from muscle_analyzer.core.opensim.motion_on_model import MotionOnModel
+from muscle_analyzer.core.reserves import read_reserves
+from muscle_analyzer.core.static_optimization import StaticOptimization
+
+Array = NDArray[np.float64]
+Rows = NDArray[np.int64]
+
+
+class OwnSide:
+    """Computes with this project's functions on a motion.
+
+    Parameters
+    ----------
+    motion : MotionOnModel
+    options : MuscleAnalyzerOptions
+
+    Raises
+    ------
+    OptionError
+        If the optimisation cannot be set up.
+    """
+
+    def __init__(self, motion: MotionOnModel, options: MuscleAnalyzerOptions) -> None:
+        self.motion = motion
+        self._options = options
+        self._solver = LoadSolver(motion.model, options)
+        self.muscle_names = self._solver.muscle_names
+        self.coordinate_names = self._solver.coordinate_names
+        names = motion.model.coordinate_names
+        self._balanced = [names.index(name) for name in self.coordinate_names]
+        self._table = path_table(motion.model, options.geodesic_wrapping)
+        self._muscles = MuscleParameters.of(motion.model.source.muscles)
+
+    def torques(self) -> Array:
+        """Return the torques (n, n_x) of all samples and tree coordinates, N m or N."""
+        tree = self.motion.model.tree
+        return np.array(
+            [
+                inverse_dynamics(tree, self._state(k), self.motion.external(k)).tree_force
+                for k in range(self.motion.time.size)
+            ]
+        )
+
+    def answer(self, rows: Rows) -> Answer:
+        """Return this project's answer for these samples.
+
+        Raises
+        ------
+        OpenSimError
+            If the optimisation does not converge in one of them: nothing to compare.
+        """
+        motion = self.motion
+        found = []
+        for k in rows.tolist():
+            self._solver.reset()
+            state = (motion.q[k], motion.qd[k], motion.qdd[k])
+            loads = self._solver.solve(*state, motion.external(k))
+            balance = loads.balance
+            if not balance.converged:
+                raise OpenSimError(
+                    f'{motion.time[k]:.3f} s: nothing to compare, {balance.report.message}'
+                )
+            paths = self._paths(k)
+            arm = paths.moment_arm[:, self._balanced]
+            reaction = self.reactions(k, loads.force)
+            found.append(
+                (paths.length, arm, balance.activation, loads.force, balance.reserve, reaction)
+            )
+        return Answer(self.torques(), *map(np.array, zip(*found, strict=True)))
+
+    def _state(self, k: int) -> BodyState:
+        motion = self.motion
+        return forward_kinematics(motion.model.tree, motion.q[k], motion.qd[k], motion.qdd[k])
+
+    def _paths(self, k: int) -> MusclePaths:
+        state = self._state(k)
+        jacobian = body_jacobians(self.motion.model.tree, state)
+        return muscle_paths(self._table, state.position, state.rotation, jacobian)
+
+    def _strength(self, k: int, paths: MusclePaths) -> MuscleState:
+        if not self._options.force_length_velocity:
+            return self._muscles.isometric()
+        speed = -paths.moment_arm @ self.motion.qd[k]
+        return self._muscles.state(paths.length, speed, self._options.passive_force)
+
+    def reactions(self, k: int, force: Array) -> Array:
+        """Return the reactions (n_b, 6) at all joints under given muscle forces (n_m,), N."""
+        tree = self.motion.model.tree
+        state = self._state(k)
+        dynamics = inverse_dynamics(tree, state, self.motion.external(k))
+        wrench = self._paths(k).wrench
+        pulls = body_wrenches(self._table, wrench, force, len(self.motion.model.body_names))
+        about_ground = joint_reactions(tree, dynamics.joint_wrench, pulls)
+        return np.array(
+            [wrench_at(w, p) for w, p in zip(about_ground, state.joint_position, strict=True)]
+        )
+
+    def optimum(self, k: int, force: Array, reserve: Array) -> tuple[float, float, Array]:
+        """Share the very torques that other muscle forces and reserves balance.
+
+        Parameters
+        ----------
+        k : int
+            Sample.
+        force : (n_m,) array
+            N.
+        reserve : (n_c,) array
+            N m.
+
+        Returns
+        -------
+        tuple of float, float and (n_m,) array
+            Smallest cost, the cost of the given forces (sums of squares), and the forces of the
+            smallest cost, N.
+        """
+        paths = self._paths(k)
+        arm = paths.moment_arm[:, self._balanced]
+        strength = self._strength(k, paths)
+        reserves = read_reserves(self.coordinate_names)
+        unit = np.array([reserve.torque for reserve in reserves])
+        options = self._options.static_optimization
+        solver = StaticOptimization(self.muscle_names, reserves, options)
+        active = force - strength.passive
+        balance = solver.solve((arm * strength.active[:, None]).T, arm.T @ active + reserve)
+        cost = float(np.sum((active / strength.active) ** 2) + np.sum((reserve / unit) ** 2))
+        ours = balance.activation * strength.active + strength.passive
+        return balance.report.objective, cost, ours
+
+    def disc_rotation(self, k: int) -> Array:
+        """Return the rotation (3, 3) ground <- L5-S1 disc in a sample."""
+        state, model = self._state(k), self.motion.model
+        knee = np.mean([self.motion.q[k, model.coordinate_index(name)] for name in KNEES])
+        return disc_rotation(
+            disc_option(self._options.disc_frame),
+            state.rotation[model.body_index(L5)],
+            state.rotation[model.body_index(THORAX)],
+            float(knee),
+        )
