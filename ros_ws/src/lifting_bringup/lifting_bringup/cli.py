@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""The `lift` command: import, play, record, run, report, demo."""
+"""The `lift` command: import, play, record, run, report, demo, compare-opensim."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from lifting_bringup import opensim_command
 from lifting_bringup.bags.exceptions import BagError
 from lifting_bringup.graph_errors import GraphError
 from lifting_bringup.node_process import discovery
@@ -92,6 +93,8 @@ def _parser() -> argparse.ArgumentParser:
     report.add_argument('results', type=Path, help='results.mcap of a run')
     report.add_argument('--output', type=Path, help='HTML file (default: beside the results)')
     report.set_defaults(handler=_report)
+
+    opensim_command.add_to(commands)
     return parser
 
 
