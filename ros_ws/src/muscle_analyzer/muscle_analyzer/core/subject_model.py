@@ -21,6 +21,7 @@ from muscle_analyzer.core.muscle_path_table import path_table
 from muscle_analyzer.core.muscle_paths import muscle_paths
 from muscle_analyzer.core.osim_model import OsimModel
 from muscle_analyzer.core.scaling import StrengthScaling, scale_model
+from muscle_analyzer.core.segment_masses import SegmentMass, with_segment_masses
 
 Array = NDArray[np.float64]
 
@@ -80,6 +81,7 @@ def subject_model(
     lengths: Mapping[str, float],
     mass: float,
     strength: StrengthScaling = StrengthScaling.NONE,
+    segments: Mapping[str, SegmentMass] | None = None,
 ) -> SubjectModel:
     """Scale a model to a subject and compile it.
 
@@ -94,16 +96,20 @@ def subject_model(
     mass : float
         kg.
     strength : StrengthScaling
+    segments : mapping of str to SegmentMass, optional
+        Masses of the subject's segments in the same posture; without them the body mass is
+        distributed as in the generic model.
 
     Raises
     ------
     ScalingError
-        If points are missing or factors are not positive.
+        If points or segments are missing or factors are not positive.
     """
     factors = scale_factors(compile_model(generic), points, lengths)
-    scaled = compile_model(
-        with_published_ranges(
-            scale_model(generic, factors, mass, default_path_lengths, strength)
-        )
+    model = with_published_ranges(
+        scale_model(generic, factors, mass, default_path_lengths, strength)
     )
+    if segments is not None:
+        model = with_segment_masses(model, segments, points)
+    scaled = compile_model(model)
     return SubjectModel(scaled, attach_points(scaled, points), factors)
