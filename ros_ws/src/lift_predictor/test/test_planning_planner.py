@@ -43,7 +43,8 @@ def test_given_mass_is_planned_and_checked_between_the_nodes(free) -> None:
     np.testing.assert_allclose(motion.velocity[[0, -1]], 0.0, atol=1e-6)
     assert motion.time[-1] == pytest.approx(1.2)
     hands = [motion.point_names.index(f'hand_{side}') for side in 'rl']
-    np.testing.assert_allclose(motion.points[:, hands].mean(axis=1), motion.box_position, atol=1e-9)
+    grip = motion.points[:, hands].mean(axis=1)
+    np.testing.assert_allclose(grip, motion.box_position, atol=1e-9)
 
 
 def test_technique_costs_effort_and_is_kept(planner, subject, free) -> None:
