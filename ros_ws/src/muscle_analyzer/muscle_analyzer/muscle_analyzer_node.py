@@ -33,6 +33,7 @@ from muscle_analyzer.core.analyzer import MuscleAnalyzer, MuscleAnalyzerOptions
 from muscle_analyzer.core.exceptions import MuscleAnalyzerError
 from muscle_analyzer.core.muscle_analysis import MuscleAnalysis as Analysis
 from muscle_analyzer.core.scaling import StrengthScaling
+from muscle_analyzer.core.segment_masses import MassDistribution
 
 WAITING_LIFTS: Final = 100
 """Lifts kept until their person is known and the node is active."""
@@ -52,6 +53,7 @@ class MuscleAnalyzerNode(PipelineNode):
             MuscleAnalyzerOptions(
                 model_path=Path(model) if model else None,
                 strength=StrengthScaling(values.pop('strength')),
+                mass_distribution=MassDistribution(values.pop('mass_distribution')),
                 **values,
             )
         )

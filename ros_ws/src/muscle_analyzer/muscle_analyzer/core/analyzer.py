@@ -29,6 +29,7 @@ from muscle_analyzer.core.exceptions import InputArrayError, NotConfiguredError
 from muscle_analyzer.core.muscle_analysis import MuscleAnalysis
 from muscle_analyzer.core.osim_model import OsimModel
 from muscle_analyzer.core.osim_reader import read_osim
+from muscle_analyzer.core.segment_masses import MassDistribution, segment_masses
 from muscle_analyzer.core.subject_model import lifting_model_path, subject_model
 from muscle_analyzer.core.torque_limits import JointTorques, TorqueLimits
 from muscle_analyzer.core.transfer import MotionTransfer
@@ -73,12 +74,14 @@ class MuscleAnalyzer:
         self._generic = self._generic or self._read()
         skeleton = Skeleton3D.of(subject)
         upright = np.zeros(len(skeleton.coordinates))
+        own = self.options.mass_distribution is MassDistribution.SEGMENTS
         self._model = subject_model(
             self._generic,
             skeleton.points(upright),
             skeleton.parameters.lengths,
             subject.mass,
             self.options.strength,
+            segment_masses(skeleton) if own else None,
         )
         self._subject = subject
         self._streams = {}

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from muscle_analyzer.core.disc_frame import DEFAULT_OPTION
 from muscle_analyzer.core.scaling import StrengthScaling
+from muscle_analyzer.core.segment_masses import MassDistribution
 from muscle_analyzer.core.static_optimization import StaticOptimizationOptions
 
 
@@ -31,6 +32,8 @@ class MuscleAnalyzerOptions:
         Whether paths over a single cylinder are geodesics or OpenSim's construction.
     strength
         How muscle strength follows body mass.
+    mass_distribution
+        Whose share of the body mass each segment has (see `segment_masses.MassDistribution`).
     coefficient_set
         Published joint strength data (see `human_model.strength`).
     static_optimization
@@ -43,6 +46,7 @@ class MuscleAnalyzerOptions:
     passive_force: bool = False
     geodesic_wrapping: bool = False
     strength: StrengthScaling = StrengthScaling.NONE
+    mass_distribution: MassDistribution = MassDistribution.MODEL
     coefficient_set: str = 'anderson2007_nonneg'
     static_optimization: StaticOptimizationOptions = field(
         default_factory=StaticOptimizationOptions
