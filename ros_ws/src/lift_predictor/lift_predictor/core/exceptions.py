@@ -32,4 +32,4 @@ class CancelledError(LiftPredictorError):
 
 
 class PercentileError(LiftPredictorError):
-    """No plausible strength explains a recorded maximum lift, or a prediction on the way failed."""
+    """No plausible strength explains a maximum lift, or a prediction on the way failed."""

@@ -18,6 +18,7 @@ from lift_predictor.core.exceptions import TaskError, UnreachableError
 from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.sagittal.comparison import LiftComparison
 from lift_predictor.core.sagittal.evaluation import total_effort
+from lift_predictor.core.sagittal.feasibility import TIE_BREAK
 from lift_predictor.core.sagittal.grid import WEIGHT_OFFSET
 from lift_predictor.core.sagittal.prediction import PredictedLift2D
 from lift_predictor.core.sagittal.starts import make_starts
@@ -28,9 +29,6 @@ POSTURE_TOLERANCES: Final = (0.1, 0.15, 0.1)
 """Epsilon of equation 2.23 at 0, T/2 and T [rad]."""
 LARGEST_WEIGHT: Final = 1000.0
 """Upper bound of the box's weight (section 2.3) [N]."""
-TIE_BREAK: Final = 1e-4
-"""Factor of the effort [1/s] where the weight alone is maximised: it decides between the lifts of
-the same weight, which differ in effort, and costs less than 0.05 % of the weight."""
 
 
 @dataclass(frozen=True)

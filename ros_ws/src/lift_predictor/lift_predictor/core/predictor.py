@@ -20,10 +20,18 @@ from human_model.subject import Subject
 from lift_predictor.core.exceptions import TaskError, UnreachableError
 from lift_predictor.core.sagittal.comparison import LiftComparison, compare
 from lift_predictor.core.sagittal.evaluation import evaluate, sample, total_effort
+from lift_predictor.core.sagittal.feasibility import (
+    HOPELESS,
+    closer_lift,
+    lighter_lift,
+    missing_way,
+    way_to,
+    with_nearest,
+)
 from lift_predictor.core.sagittal.grid import Grid
 from lift_predictor.core.sagittal.lift_motion import body_motion, mtp_torque, sample_times
 from lift_predictor.core.sagittal.person import COEFFICIENT_SET, Person
-from lift_predictor.core.sagittal.prediction import TORQUE_NAMES, PredictedLift2D
+from lift_predictor.core.sagittal.prediction import TORQUE_NAMES, NearestLift, PredictedLift2D
 from lift_predictor.core.sagittal.starts import make_starts
 from lift_predictor.core.sagittal.task import POSTURE_TOLERANCE, Box, LiftTask2D, build_task
 from lift_predictor.core.sagittal.verify import Verification, verify
@@ -133,11 +141,20 @@ class LiftPredictor:
         """
         if self.person is None:
             raise TaskError('subject: none was configured before the first lift')
+        failed, comparison = self._attempt(lift, box, progress)
+        if failed.report.status not in HOPELESS:
+            return failed, comparison
+        return self._explained(failed, lift, box), None
+
+    def _attempt(
+        self, lift: Lift, box: Box, progress: Progress | None = None, share: float = 1.0
+    ) -> tuple[PredictedLift2D, LiftComparison | None]:
+        """Predict with a share of the way from the recorded places to those asked for."""
         begin = time.perf_counter()
         duration = lift.end - lift.start
         try:
             _require_good(lift)
-            task = build_task(self.person, lift, box, self.options.posture_tolerance)
+            task = self._task(lift, box, share)
         except (TaskError, UnreachableError, HumanModelError) as error:
             status = (
                 SolveStatus.PREDICTOR_UNREACHABLE
@@ -147,6 +164,47 @@ class LiftPredictor:
             report = SolveReport(status, str(error), build_time=time.perf_counter() - begin)
             return PredictedLift2D.failed(lift.lift_id, box.mass, duration, report), None
         return self._solve(task, begin, make_starts(task, self.programme.grid.spline), progress)
+
+    def _task(self, lift: Lift, box: Box, share: float = 1.0) -> LiftTask2D:
+        if self.person is None:
+            raise TaskError('subject: none was configured before the first lift')
+        return build_task(self.person, lift, box, self.options.posture_tolerance, share)
+
+    def _explained(self, failed: PredictedLift2D, lift: Lift, box: Box) -> PredictedLift2D:
+        """Add the limit that breaks first, and the nearest feasible lift, to a failed result."""
+        nearest: NearestLift | None = None
+        if failed.report.status is not SolveStatus.PREDICTOR_UNREACHABLE:
+            nearest = self.lighter_lift(self._task(lift, box))
+        if nearest is None and not (box.start is None and box.end is None):
+            way = way_to(self._task(lift, box, 0.0), box)
+            nearest = closer_lift(
+                lambda share: self._attempt(lift, box, None, share)[0],
+                failed,
+                float(np.linalg.norm(way, axis=1).max()),
+                lambda share: missing_way(way, share),
+            )
+        return with_nearest(failed, nearest)
+
+    def lighter_lift(
+        self, task: LiftTask2D, starts: Sequence[Start] | None = None
+    ) -> NearestLift | None:
+        """Find the lift of an infeasible task with the largest mass that can be lifted so.
+
+        Parameters
+        ----------
+        task : LiftTask2D
+            Recorded or planned.
+        starts : sequence of Start, optional
+            Initial guesses; those of `make_starts` if omitted.
+
+        Returns
+        -------
+        NearestLift or None
+            None: not even empty hands can move so.
+        """
+        if starts is None:
+            starts = make_starts(task, self.programme.grid.spline)
+        return lighter_lift(self.solve_task, task, starts)
 
     def solve_task(
         self, task: LiftTask2D, starts: Sequence[Start], progress: Progress | None = None

@@ -22,6 +22,25 @@ TORQUE_NAMES: Final = (*JOINTS, 'mtp_angle')
 
 
 @dataclass(frozen=True, eq=False)
+class NearestLift:
+    """What can be done instead of an infeasible task; see `feasibility`.
+
+    Attributes
+    ----------
+    limit : str
+        Name of the limit that breaks first.
+    change : str
+        What is changed, by how much.
+    prediction : PredictedLift2D
+        The changed lift, solved and checked.
+    """
+
+    limit: str
+    change: str
+    prediction: PredictedLift2D
+
+
+@dataclass(frozen=True, eq=False)
 class PredictedLift2D:
     """Result of one prediction; without a good solution it holds the report only.
 
@@ -49,6 +68,8 @@ class PredictedLift2D:
         Dense-grid check.
     notes : tuple of str
         Adaptations of the task, and how the functions were run.
+    nearest : NearestLift or None
+        The nearest feasible lift, where the task is infeasible and there is one.
     """
 
     lift_id: str
@@ -65,6 +86,7 @@ class PredictedLift2D:
     optima: tuple[Optimum, ...]
     verification: Verification | None
     notes: tuple[str, ...]
+    nearest: NearestLift | None = None
 
     @classmethod
     def failed(

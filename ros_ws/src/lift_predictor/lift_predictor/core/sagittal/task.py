@@ -98,6 +98,7 @@ def build_task(
     lift: Lift,
     box: Box,
     posture_tolerance: float | Sequence[float] = POSTURE_TOLERANCE,
+    share: float = 1.0,
 ) -> LiftTask2D:
     """Build the task of a recorded lift.
 
@@ -111,6 +112,8 @@ def build_task(
         What was lifted.
     posture_tolerance : float or sequence of 3 floats
         Epsilon of equation 4.8, or those of equation 2.23 at start, middle and end [rad].
+    share : float
+        Of the way from the recorded places of the box to those asked for.
 
     Raises
     ------
@@ -150,7 +153,8 @@ def build_task(
     hand = np.stack([_at(measured, measured.grip, t) for t in instants[[0, 2]]])
     for row, place in enumerate((box.start, box.end)):
         if place is not None:
-            hand[row] = plane.into(np.asarray(place, dtype=float)) - from_hand
+            asked = plane.into(np.asarray(place, dtype=float)) - from_hand
+            hand[row] += share * (asked - hand[row])
     bounds = _bounds(person, postures, tolerance, hand, box.mass)
     ends = _reachable_ends(bounds, postures, parameters)
     return LiftTask2D(
