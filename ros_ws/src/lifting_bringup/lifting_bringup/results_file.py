@@ -16,7 +16,7 @@ from lifting_bringup.bags.reader import BagReader
 MEASURED, PREDICTED = 'measured', 'predicted'
 _SOURCE = {SpineLoad.MEASURED: MEASURED, SpineLoad.PREDICTED: PREDICTED}
 #: Blocks that come once for the recorded and once for the predicted lift.
-_BLOCKS = ('muscle_analysis', 'spine_load', 'joint_torques')
+_BLOCKS = ('muscle_analysis', 'spine_load', 'joint_reactions', 'joint_torques')
 _SINGLE = ('measured_lift', 'predicted_lift', 'lift_comparison', 'risk_assessment')
 
 
@@ -33,7 +33,7 @@ class LiftMessages:
     single : dict
         By topic: measured_lift, predicted_lift, lift_comparison, risk_assessment.
     blocks : dict
-        By (topic, source): muscle_analysis, spine_load, joint_torques.
+        By (topic, source): muscle_analysis, spine_load, joint_reactions, joint_torques.
     """
 
     single: dict[str, Any] = field(default_factory=dict)

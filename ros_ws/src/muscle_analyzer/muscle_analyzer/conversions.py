@@ -9,6 +9,7 @@ from array import array
 import numpy as np
 import numpy.typing as npt
 from geometry_msgs.msg import Vector3, Wrench, WrenchStamped
+from lifting_interfaces.msg import JointReactions as JointReactionsMsg
 from lifting_interfaces.msg import JointTorques as JointTorquesMsg
 from lifting_interfaces.msg import MuscleAnalysis as MuscleAnalysisMsg
 from lifting_interfaces.msg import SpineLoad as SpineLoadMsg
@@ -27,6 +28,7 @@ from muscle_analyzer.core.torque_limits import JointTorques
 
 __all__ = [
     'analysis_to_msg',
+    'joint_reactions_to_msg',
     'mass_in_hands',
     'motion_from_msg',
     'quality_from_msg',
@@ -102,6 +104,21 @@ def spine_load_to_msg(analysis: MuscleAnalysis, box_mass: float) -> SpineLoadMsg
     return message
 
 
+def joint_reactions_to_msg(analysis: MuscleAnalysis) -> JointReactionsMsg:
+    """Return the message of the loads of all joints."""
+    message = JointReactionsMsg(
+        subject=analysis.pseudonym,
+        body_mass=analysis.body_mass,
+        joint_names=list(analysis.joint_names),
+        force=flat(analysis.joint_force),
+        moment=flat(analysis.joint_moment),
+        disc_frame=analysis.disc_frame,
+        report=report_to_msg(analysis.report),
+    )
+    _put_block(message, analysis, analysis.status)
+    return message
+
+
 def torques_to_msg(torques: JointTorques) -> JointTorquesMsg:
     """Return the message of joint torques and strength."""
     message = JointTorquesMsg(
@@ -130,7 +147,7 @@ def reactions_to_msg(analysis: MuscleAnalysis) -> list[WrenchStamped]:
 
 
 def _put_block(
-    message: MuscleAnalysisMsg | SpineLoadMsg | JointTorquesMsg,
+    message: MuscleAnalysisMsg | SpineLoadMsg | JointReactionsMsg | JointTorquesMsg,
     block: MuscleAnalysis | JointTorques,
     status: npt.NDArray[np.int64],
 ) -> None:

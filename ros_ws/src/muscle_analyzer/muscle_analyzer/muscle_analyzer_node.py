@@ -12,6 +12,7 @@ from typing import Final
 from geometry_msgs.msg import WrenchStamped
 from lifting_interfaces.msg import (
     BodyMotion,
+    JointReactions,
     JointTorques,
     MeasuredLift,
     MuscleAnalysis,
@@ -33,6 +34,7 @@ from muscle_analyzer.core.analyzer import MuscleAnalyzer, MuscleAnalyzerOptions
 from muscle_analyzer.core.exceptions import MuscleAnalyzerError
 from muscle_analyzer.core.muscle_analysis import MuscleAnalysis as Analysis
 from muscle_analyzer.core.scaling import StrengthScaling
+from muscle_analyzer.core.static_optimization import StaticOptimizationOptions
 from muscle_analyzer.core.segment_masses import MassDistribution
 
 WAITING_LIFTS: Final = 100
@@ -53,6 +55,10 @@ class MuscleAnalyzerNode(PipelineNode):
             MuscleAnalyzerOptions(
                 model_path=Path(model) if model else None,
                 strength=StrengthScaling(values.pop('strength')),
+                static_optimization=StaticOptimizationOptions(
+                    criterion=values.pop('criterion'),
+                    minimum_activation=values.pop('minimum_activation'),
+                ),
                 mass_distribution=MassDistribution(values.pop('mass_distribution')),
                 **values,
             )
@@ -66,6 +72,7 @@ class MuscleAnalyzerNode(PipelineNode):
         self._muscles = self.advertise(MuscleAnalysis, 'muscle_analysis', qos.FRAMES)
         self._spine = self.advertise(SpineLoad, 'spine_load', qos.FRAMES)
         self._torques = self.advertise(JointTorques, 'joint_torques', qos.FRAMES)
+        self._joints = self.advertise(JointReactions, 'joint_reactions', qos.FRAMES)
         self._reaction = self.advertise(WrenchStamped, 'l5_s1/reaction', qos.FRAMES)
         self.subscribe(SubjectMsg, 'subject', self._on_subject, qos.LATCHED)
         self.subscribe(Task, 'task', self._on_task, qos.LATCHED)
@@ -157,6 +164,7 @@ class MuscleAnalyzerNode(PipelineNode):
         torques = self.analyzer.joint_torques(analysis, motion)
         self._spine.publish(conversions.spine_load_to_msg(analysis, box_mass))
         self._torques.publish(conversions.torques_to_msg(torques))
+        self._joints.publish(conversions.joint_reactions_to_msg(analysis))
         self._muscles.publish(conversions.analysis_to_msg(analysis))
         return analysis
 

@@ -45,6 +45,9 @@ def analysis():
         disc_frame='bruno2015',
         l5_s1_force=np.array([[-300.0, 20.0, 3000.0], [-400.0, -10.0, 3500.0]]),
         l5_s1_moment=numbers(N, 3),
+        joint_names=('l5_s1', 'hip_r'),
+        joint_force=numbers(N, 2, 3),
+        joint_moment=-numbers(N, 2, 3),
         compression_per_degree=np.array([1.0, 2.0]),
         anterior_shear_per_degree=np.array([3.0, 4.0]),
         net_moment_top_down=np.array([[3.0, 4.0, 0.0], [0.0, 0.0, 5.0]]),
@@ -109,6 +112,16 @@ def test_reaction_only_of_good_samples(analysis):
     assert (torque.x, torque.y, torque.z) == (1.0, 2.0, 3.0)
     assert message.header.frame_id == 'l5_s1'
     assert to_seconds(message.header.stamp) == pytest.approx(1000.25, abs=1e-6)
+
+
+def test_joint_reactions(analysis):
+    message = conversions.joint_reactions_to_msg(analysis)
+    check_block(message)
+    assert list(message.joint_names) == ['l5_s1', 'hip_r']
+    np.testing.assert_array_equal(message.force, analysis.joint_force.ravel())
+    np.testing.assert_array_equal(message.moment, analysis.joint_moment.ravel())
+    assert (message.subject, message.body_mass) == ('p01', 63.5)
+    assert list(message.status) == [int(WEAK.status)] * N
 
 
 def test_joint_torques(analysis):

@@ -41,6 +41,8 @@ MUSCLES = (
     'force',
     'reserve',
     'l5_s1_force',
+    'joint_force',
+    'joint_moment',
     'l5_s1_moment',
     'compression_per_degree',
     'anterior_shear_per_degree',
@@ -57,6 +59,8 @@ class AnalysisSample:
     reserve: Array
     l5_s1_force: Array
     l5_s1_moment: Array
+    joint_force: Array
+    joint_moment: Array
     compression_per_degree: float
     anterior_shear_per_degree: float
     net_moment_top_down: Array
@@ -104,6 +108,7 @@ class SampleSolver:
         self._foot_frames = [frames.index(name) for name in ('foot_r', 'foot_l')]
         self.muscle_names = self._loads.muscle_names
         self.coordinate_names = self._loads.coordinate_names
+        self.joint_names = self._loads.joint_names
 
     def reset(self) -> None:
         """Forget the sample before."""
@@ -192,6 +197,8 @@ class SampleSolver:
             reserve=solution.balance.reserve,
             l5_s1_force=disc.force if disc else nothing,
             l5_s1_moment=disc.moment if disc else nothing,
+            joint_force=solution.joints.force,
+            joint_moment=solution.joints.moment,
             compression_per_degree=disc.compression_per_degree if disc else np.nan,
             anterior_shear_per_degree=disc.shear_per_degree if disc else np.nan,
             net_moment_top_down=from_opensim(net.top_down),

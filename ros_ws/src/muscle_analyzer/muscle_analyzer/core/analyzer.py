@@ -245,6 +245,7 @@ class MuscleAnalyzer:
             time=motion.time,
             muscle_names=solver.muscle_names,
             coordinate_names=solver.coordinate_names,
+            joint_names=solver.joint_names,
             disc_frame=str(self._disc),
             torque_status=np.array([int(sample.torque_status) for sample in samples], np.int64),
             reports=tuple(sample.report for sample in samples),

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from muscle_analyzer.core.disc_frame import DEFAULT_OPTION
+from muscle_analyzer.core.recruitment import MuscleWeighting
 from muscle_analyzer.core.scaling import StrengthScaling
 from muscle_analyzer.core.segment_masses import MassDistribution
 from muscle_analyzer.core.static_optimization import StaticOptimizationOptions
@@ -36,8 +37,13 @@ class MuscleAnalyzerOptions:
         Whose share of the body mass each segment has (see `segment_masses.MassDistribution`).
     coefficient_set
         Published joint strength data (see `human_model.strength`).
+    muscle_weighting
+        What an activation weighs in the cost (see `recruitment.MuscleWeighting`).
+    abdominal_activation
+        Least activation of the abdominal muscles: co-contraction that the optimisation alone
+        never finds.
     static_optimization
-        Settings of the solver.
+        Settings of the solver, the criterion among them.
     """
 
     model_path: Path | None = None
@@ -48,6 +54,8 @@ class MuscleAnalyzerOptions:
     strength: StrengthScaling = StrengthScaling.NONE
     mass_distribution: MassDistribution = MassDistribution.MODEL
     coefficient_set: str = 'anderson2007_nonneg'
+    muscle_weighting: str = MuscleWeighting.EQUAL
+    abdominal_activation: float = 0.0
     static_optimization: StaticOptimizationOptions = field(
         default_factory=StaticOptimizationOptions
     )

@@ -40,8 +40,8 @@ from muscle_analyzer.core.exceptions import InputArrayError, OptionError
 
 Array = NDArray[np.float64]
 
-# OpenSim's body axes (forward, up, right) as columns forward, left, up.
-_FORWARD_LEFT_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+#: OpenSim's body axes (forward, up, right) as columns forward, left, up.
+FORWARD_LEFT_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 
 
 class DiscOption(StrEnum):
@@ -147,9 +147,14 @@ def disc_rotation(
         upright = np.column_stack([forward, left, up])
     else:
         tilt = math.radians(disc_parameters(option)['forward_tilt'])
-        upright = vertebra @ _FORWARD_LEFT_UP
-    c, s = math.cos(tilt), math.sin(tilt)
-    leant: Array = upright @ np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
+        upright = vertebra @ FORWARD_LEFT_UP
+    return leant_forward(upright, tilt)
+
+
+def leant_forward(frame: Array, angle: float) -> Array:
+    """Return a frame (3, 3), columns forward, left, up, leant forward about its left axis, rad."""
+    c, s = math.cos(angle), math.sin(angle)
+    leant: Array = frame @ np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
     return leant
 
 

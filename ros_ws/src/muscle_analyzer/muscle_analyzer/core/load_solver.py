@@ -18,12 +18,14 @@ from numpy.typing import NDArray
 from muscle_analyzer.core.analyzer_options import MuscleAnalyzerOptions
 from muscle_analyzer.core.disc_frame import DiscLoad, disc_load, disc_option, disc_rotation
 from muscle_analyzer.core.inverse_dynamics import inverse_dynamics, wrench_at
+from muscle_analyzer.core.joint_loads import JointLoad, JointLoadFrames
 from muscle_analyzer.core.joint_reaction import NetMoment, joint_reactions, net_moment
 from muscle_analyzer.core.kinematics import body_jacobians, forward_kinematics
 from muscle_analyzer.core.multibody import MultibodyModel
 from muscle_analyzer.core.muscle_curves import MuscleParameters
 from muscle_analyzer.core.muscle_path_table import path_table
 from muscle_analyzer.core.muscle_paths import body_wrenches, muscle_paths
+from muscle_analyzer.core.recruitment import least_activations, muscle_weights
 from muscle_analyzer.core.reserves import read_reserves
 from muscle_analyzer.core.static_optimization import MuscleBalance, StaticOptimization
 
@@ -54,6 +56,8 @@ class LoadSolution:
         Moment about the L5-S1 joint's centre and force of S1 on L5 [N m, N].
     disc : DiscLoad or None
         The reaction in the disc frame; None when the optimisation did not converge.
+    joints : JointLoad
+        Loads of the joints of `LoadSolver.joint_names` in their anatomical frames.
     net : NetMoment
         Net moment at L5-S1 from both sides [N m].
     residual : (6,)
@@ -65,6 +69,7 @@ class LoadSolution:
     balance: MuscleBalance
     reaction: Array
     disc: DiscLoad | None
+    joints: JointLoad
     net: NetMoment
     residual: Array
 
@@ -103,8 +108,14 @@ class LoadSolver:
         self.lumbar = tuple(name for name in names if name.startswith(LUMBAR_COORDINATES))
         self._table = path_table(model, options.geodesic_wrapping)
         self._muscles = MuscleParameters.of(model.source.muscles)
+        self._frames = JointLoadFrames(model, self.disc)
+        self.joint_names = self._frames.names
         self._optimization = StaticOptimization(
-            self.muscle_names, read_reserves(self.coordinate_names), options.static_optimization
+            self.muscle_names,
+            read_reserves(self.coordinate_names),
+            options.static_optimization,
+            muscle_weights(self._muscles, options.muscle_weighting),
+            least_activations(self.muscle_names, options.abdominal_activation),
         )
 
     def reset(self) -> None:
@@ -145,8 +156,8 @@ class LoadSolver:
         force = balance.activation * strength.active + strength.passive
 
         pulls = body_wrenches(self._table, paths.wrench, force, len(self.model.body_names))
-        reaction = joint_reactions(tree, dynamics.joint_wrench, pulls)[self._l5]
-        reaction = wrench_at(reaction, state.joint_position[self._l5])
+        reactions = joint_reactions(tree, dynamics.joint_wrench, pulls)
+        reaction = wrench_at(reactions[self._l5], state.joint_position[self._l5])
         knee = float(np.mean(q[self._knees]))
         rotation = disc_rotation(
             self.disc, state.rotation[self._l5], state.rotation[self._thorax], knee
@@ -158,6 +169,9 @@ class LoadSolver:
             balance=balance,
             reaction=reaction,
             disc=disc_load(reaction, rotation) if converged else None,
+            joints=self._frames.loads(
+                reactions, state.joint_position, state.rotation, rotation
+            ),
             net=net_moment(dynamics.joint_wrench, state, self._l5, self._root),
             residual=wrench_at(dynamics.joint_wrench[self._root], state.position[self._root]),
         )

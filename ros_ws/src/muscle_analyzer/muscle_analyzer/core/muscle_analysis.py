@@ -51,6 +51,11 @@ class MuscleAnalysis:
     l5_s1_force, l5_s1_moment : (n, 3)
         Of S1 on L5 about the joint centre, in the disc frame (anterior, left, cranial) [N, N m];
         compression is +z, anterior shear -x, lateral shear +y.
+    joint_names : tuple of str, n_j
+        Lumbar levels, hips and knees (see `joint_loads`).
+    joint_force, joint_moment : (n, n_j, 3)
+        Of the lower segment on the upper one, in the joint's anatomical frame (anterior, left,
+        cranial) [N, N m]; signs as at L5-S1.
     compression_per_degree, anterior_shear_per_degree : (n,)
         Change per degree of more forward tilt of the disc frame [N / deg].
     net_moment_top_down, net_moment_bottom_up : (n, 3)
@@ -89,6 +94,9 @@ class MuscleAnalysis:
     disc_frame: str
     l5_s1_force: Array
     l5_s1_moment: Array
+    joint_names: tuple[str, ...]
+    joint_force: Array
+    joint_moment: Array
     compression_per_degree: Array
     anterior_shear_per_degree: Array
     net_moment_top_down: Array

@@ -1,0 +1,152 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Loads of all joints in anatomical frames: lumbar discs, hips, knees.
+
+One convention for all: the force of the *lower* segment on the *upper* one at the joint's centre,
+in a frame with x anterior, y left, z towards the head.  At L5-S1 that is the force of S1 on L5, at
+the knee that of the tibia on the femur.  Compression is +F_z, anterior shear (the upper segment
+pushed forward on the lower one) is -F_x, lateral shear is +F_y.
+
+Lumbar levels have the frames of their discs (`disc_frame`).  `bruno2015` gives every level its
+share of the lordosis; `chaffin` knows L5-S1 only, and the levels above it have those of
+`bruno2015`; `vertebral` is not turned.  Hips and knees have the axes of femur and tibia.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+from dataclasses import dataclass
+from importlib.resources import files
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from muscle_analyzer.core.disc_frame import (
+    FORWARD_LEFT_UP,
+    DiscOption,
+    disc_parameters,
+    leant_forward,
+)
+from muscle_analyzer.core.exceptions import OptionError
+from muscle_analyzer.core.multibody import MultibodyModel
+
+Array = NDArray[np.float64]
+
+#: The joint whose frame depends on the posture with `chaffin`.
+LUMBOSACRAL = 'l5_s1'
+
+
+@dataclass(frozen=True)
+class LoadedJoint:
+    """
+    A row of `data/loaded_joints.csv`.
+
+    Attributes
+    ----------
+    name
+        Of the joint.
+    body
+        Body of the model that the joint carries (its child).
+    upper
+        Whether that body is the upper one of the two.
+    disc
+        Whether the frame is that of a disc.
+    """
+
+    name: str
+    body: str
+    upper: bool
+    disc: bool
+
+
+class JointLoad(NamedTuple):
+    """Forces [N] and moments about the joints' centres [N m], each (n_j, 3); see the header."""
+
+    force: Array
+    moment: Array
+
+
+def read_loaded_joints() -> tuple[LoadedJoint, ...]:
+    """
+    Read the table of joints.
+
+    Raises
+    ------
+    OptionError
+        If a row cannot be used; names file, row and value.
+    """
+    path = files('muscle_analyzer') / 'data' / 'loaded_joints.csv'
+    joints = []
+    for row in csv.DictReader(path.read_text(encoding='utf-8').splitlines()):
+        if row['side'] not in ('upper', 'lower') or row['frame'] not in ('disc', 'body'):
+            raise OptionError(
+                f'{path}: {row["joint"]}: side {row["side"]!r}, frame {row["frame"]!r}'
+            )
+        joints.append(
+            LoadedJoint(row['joint'], row['body'], row['side'] == 'upper', row['frame'] == 'disc')
+        )
+    return tuple(joints)
+
+
+class JointLoadFrames:
+    """
+    Turns the reactions of a model's joints into their anatomical frames.
+
+    Parameters
+    ----------
+    model
+        The subject's model.
+    option
+        Source of the discs' orientation.
+
+    Raises
+    ------
+    UnknownNameError
+        If the model lacks a body of the table.
+    """
+
+    def __init__(self, model: MultibodyModel, option: DiscOption) -> None:
+        joints = read_loaded_joints()
+        self.names = tuple(joint.name for joint in joints)
+        self._bodies = np.array([model.body_index(joint.body) for joint in joints])
+        self._sign = np.array([1.0 if joint.upper else -1.0 for joint in joints])
+        self._lumbosacral = self.names.index(LUMBOSACRAL)
+        self._frames = np.array([_frame(joint, option) for joint in joints])
+
+    def loads(
+        self, reactions: Array, centres: Array, rotations: Array, lumbosacral: Array
+    ) -> JointLoad:
+        """
+        Give the loads in one state.
+
+        Parameters
+        ----------
+        reactions : (n_b, 6)
+            Of `joint_reaction.joint_reactions`, about the ground's origin.
+        centres : (n_b, 3)
+            Where the joints that carry the bodies are [m].
+        rotations : (n_b, 3, 3)
+            Ground <- body.
+        lumbosacral : (3, 3)
+            Ground <- L5-S1 disc.
+        """
+        wrench = self._sign[:, None] * reactions[self._bodies]
+        force = wrench[:, 3:]
+        moment = wrench[:, :3] - np.cross(centres[self._bodies], force)
+        frames = rotations[self._bodies] @ self._frames
+        frames[self._lumbosacral] = lumbosacral
+        return JointLoad(
+            np.einsum('jik,ji->jk', frames, force), np.einsum('jik,ji->jk', frames, moment)
+        )
+
+
+def _frame(joint: LoadedJoint, option: DiscOption) -> Array:
+    """Give the rotation (3, 3) body <- anatomical frame."""
+    if not joint.disc or option is DiscOption.VERTEBRAL:
+        return FORWARD_LEFT_UP
+    parameters = disc_parameters(DiscOption.BRUNO2015)
+    own = '' if joint.name == LUMBOSACRAL else f'_{joint.name}'
+    return leant_forward(FORWARD_LEFT_UP, math.radians(parameters[f'forward_tilt{own}']))
