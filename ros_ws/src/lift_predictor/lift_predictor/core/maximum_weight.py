@@ -211,21 +211,24 @@ def solve_maximum_weight(
     weighting : Weighting
         Of effort and weight.
     heaviest : MaximumWeight, optional
-        Result of `heaviest_box` for the same task, if it is known already.
+        Result of `heaviest_box` for the same task, if it is known already; otherwise it is sought
+        from the same starts, and then is the first of them.
     progress : callable, optional
         Told after each start.
     """
-    heaviest = heaviest or heaviest_box(predictor, task, starts, progress)
+    if heaviest is None:
+        heaviest = heaviest_box(predictor, task, starts, progress)
+        if heaviest.report.ok:
+            # The heaviest lift is a neighbour on the Pareto curve.
+            starts = (heaviest.prediction.optima[0].as_start(), *starts)
     scale = heaviest.normalisation
     if scale is None or weighting == heaviest.weighting:
         return heaviest
     objective = (weighting.effort / scale.effort, weighting.box / scale.log_weight)
-    # Neighbours on the Pareto curve are near: the heaviest lift is the best of all starts here.
-    first = heaviest.prediction.optima[0].as_start()
     weighted = _with_objective(task, objective)
     return _result(
         predictor, weighted, weighting, scale,
-        *predictor.solve_and_compare(weighted, (first, *starts), progress),
+        *predictor.solve_and_compare(weighted, starts, progress),
     )  # fmt: skip
 
 
