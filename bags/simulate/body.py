@@ -16,6 +16,7 @@ from scipy.spatial.transform import Rotation
 from human_model import compiled
 from human_model.named_subjects import named_subject
 from human_model.skeleton_3d import Skeleton3D
+from human_model.subject import Subject
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -72,10 +73,12 @@ class Body:
     ----------
     stage : Stage
         Subject and stance.
+    subject : Subject, optional
+        In place of the stage's subject.
     """
 
-    def __init__(self, stage: Stage) -> None:
-        self.subject = named_subject(stage.subject)
+    def __init__(self, stage: Stage, subject: Subject | None = None) -> None:
+        self.subject = subject or named_subject(stage.subject)
         self.skeleton = Skeleton3D.of(self.subject)
         lengths = self.skeleton.parameters.lengths
         self.lengths = lengths
