@@ -52,7 +52,7 @@ class CompiledAssembler:
     def __init__(self, library: NodeLibrary, groups: Sequence[Group], n: int) -> None:
         if library.compiled is None:
             raise ValueError('the library is not compiled')
-        self._c = library.compiled
+        self.library = library.compiled
         self._lanes = library.lanes
         self.n, self.m = n, sum(group.n_points * group.n_rows for group in groups)
         self._keep: list[NDArray[np.generic]] = []
@@ -61,13 +61,13 @@ class CompiledAssembler:
         for structure, group in zip(structures, groups, strict=True):
             self._describe(structure, group, library.functions[group.function].index, first_row)
             first_row += group.n_points * group.n_rows
-        self._c.lift_open.restype = ctypes.c_void_p
-        handle = self._c.lift_open(self.n, self.m, len(groups), structures)
+        self.library.lift_open.restype = ctypes.c_void_p
+        handle = self.library.lift_open(self.n, self.m, len(groups), structures)
         if not handle:
             raise MemoryError(f'no memory for a programme of {n} variables and {self.m} rows')
         self.handle = ctypes.c_void_p(handle)
-        weakref.finalize(self, self._c.lift_close, self.handle)
-        self._c.lift_values.restype = self._c.lift_first.restype = ctypes.c_double
+        weakref.finalize(self, self.library.lift_close, self.handle)
+        self.library.lift_values.restype = self.library.lift_first.restype = ctypes.c_double
 
     def _describe(self, structure: _CGroup, group: Group, function: int, first_row: int) -> None:
         batches = group.batches(self._lanes)
@@ -105,17 +105,17 @@ class CompiledAssembler:
     def set_parameters(self, parameters: Array) -> None:
         """Person and task of all following calls."""
         self._parameters = np.ascontiguousarray(parameters, dtype=float)
-        self._c.lift_parameters(self.handle, _pointer(self._parameters))
+        self.library.lift_parameters(self.handle, _pointer(self._parameters))
 
     def values(self, x: Array) -> tuple[float, Array]:
         """Objective and rows."""
         x, rows = np.ascontiguousarray(x), np.empty(self.m)
-        return self._c.lift_values(self.handle, _pointer(x), _pointer(rows)), rows
+        return self.library.lift_values(self.handle, _pointer(x), _pointer(rows)), rows
 
     def first(self, x: Array) -> tuple[float, Array, Array]:
         """Objective, rows, gradient; the point of the following calls."""
         x, rows, gradient = np.ascontiguousarray(x), np.empty(self.m), np.empty(self.n)
-        objective = self._c.lift_first(
+        objective = self.library.lift_first(
             self.handle, _pointer(x), _pointer(rows), _pointer(gradient)
         )
         return objective, rows, gradient
@@ -123,27 +123,27 @@ class CompiledAssembler:
     def times(self, step: Array) -> Array:
         """Jacobian times a step."""
         step, rows = np.ascontiguousarray(step), np.empty(self.m)
-        self._c.lift_times(self.handle, _pointer(step), _pointer(rows))
+        self.library.lift_times(self.handle, _pointer(step), _pointer(rows))
         return rows
 
     def transposed(self, multiplier: Array) -> Array:
         """Transposed Jacobian times multipliers."""
         multiplier, out = np.ascontiguousarray(multiplier), np.empty(self.n)
-        self._c.lift_transposed(self.handle, _pointer(multiplier), _pointer(out))
+        self.library.lift_transposed(self.handle, _pointer(multiplier), _pointer(out))
         return out
 
     def dense_rows(self, wanted: NDArray[np.int32]) -> Array:
         """Dense Jacobian of some rows (sorted indices)."""
         out = np.empty((len(wanted), self.n))
         wanted = np.ascontiguousarray(wanted, dtype=np.int32)
-        self._c.lift_dense_rows(self.handle, _pointer(wanted), len(wanted), _pointer(out))
+        self.library.lift_dense_rows(self.handle, _pointer(wanted), len(wanted), _pointer(out))
         return out
 
     def condensed(self, sigma: float, multiplier: Array, weight: Array) -> Array:
         """Hessian of the Lagrangian and weighted squares of the rows' gradients."""
         multiplier, weight = np.ascontiguousarray(multiplier), np.ascontiguousarray(weight)
         out = np.empty((self.n, self.n))
-        self._c.lift_condensed(
+        self.library.lift_condensed(
             self.handle, ctypes.c_double(sigma), _pointer(multiplier), _pointer(weight),
             _pointer(out),
         )  # fmt: skip

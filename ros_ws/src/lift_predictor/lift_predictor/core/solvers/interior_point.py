@@ -32,6 +32,8 @@ SOC_LIMIT, KAPPA_SOC = 4, 0.99
 KAPPA_D = 1e-5
 LARGEST_FIRST_MULTIPLIER = 1e3
 MAX_RESTORATIONS = 8
+SHORT_STEP, SHORT_STEPS = 0.1, 12
+"""So many steps in a row that the bounds cut to this length or less: the restoration takes over."""
 TINY = 10.0 * float(np.finfo(float).eps)
 ACCEPTABLE_FACTOR = 100.0
 """Without further progress, an error of this many tolerances is rounding, not failure."""
@@ -98,7 +100,7 @@ class _Solver:
         v = np.concatenate((x, s))
         self.state = self._multipliers(v) if warm is None else self._warm(v, warm)
         self.memory = InertiaMemory()
-        self.iterations = self.restorations = 0
+        self.iterations = self.restorations = self.short_steps = 0
         self.filter = Filter(self._theta(self.point.rows, v))
 
     def _inside(self, values: Array, part: slice, push: float) -> Array:
@@ -196,8 +198,12 @@ class _Solver:
             except np.linalg.LinAlgError:
                 return self._end(Status.STUCK)
             residual = self._residual(self.point.rows, self.state.v)
+            primal = float(np.abs(residual).max(initial=0.0))
             step = self._step(system, sigma, residual)
-            if not self._line_search(system, sigma, step):
+            blocked = not self._line_search(system, sigma, step)
+            stuck = self.short_steps == SHORT_STEPS and primal > options.tolerance
+            if blocked or stuck:
+                self.short_steps = 0
                 status = self._restore()
                 if status is not None:
                     return self._end(status)
@@ -254,6 +260,7 @@ class _Solver:
         theta = self._theta(self.point.rows, st.v)
         phi = self._phi(self.point.objective, st.v)
         longest = alpha = self._longest(step.v)
+        self.short_steps = self.short_steps + 1 if longest < SHORT_STEP else 0
         least = self.filter.least_step(theta, slope)
         if np.all(np.abs(step.v) <= TINY * (1.0 + np.abs(st.v))):
             self._take(st.v + longest * step.v, longest, step)

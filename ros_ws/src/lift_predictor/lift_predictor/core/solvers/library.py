@@ -27,7 +27,7 @@ FLAGS: Final = (
 )  # fmt: skip
 VECTOR_LIBM: Final = ('-DVECTOR_LIBM', '-lmvec')
 """Sine, exponential and so on of glibc's vector library, where there is one."""
-KERNEL: Final = ('lanes.h', 'assembly.c')
+KERNEL: Final = ('lanes.h', 'assembly.c', 'interior_point.c')
 GENERATORS: Final = ('node_function.py', 'emit.py')
 
 

@@ -52,41 +52,41 @@ class NewtonSystem:
             matrix = matrix + self._weight * (equality.T @ equality)
         self.shift, self._factor = _factorise(matrix, memory)
         if len(equality):
-            self._inner = _solve(self._factor, equality.T)
+            self._inner = cholesky_solve(self._factor, equality.T)
             schur = equality @ self._inner
             self._schur = _regularised(schur)
 
     def solve(self, right: Array, residual: Array) -> tuple[Array, Array]:
         """Solve K dx + E' y = right with E dx = -residual; return dx and y."""
         if not len(self._equality):
-            return _solve(self._factor, right), residual
+            return cholesky_solve(self._factor, right), residual
         corrected = right - self._weight * (self._equality.T @ residual)
-        free = _solve(self._factor, corrected)
-        y = _solve(self._schur, self._equality @ free + residual)
+        free = cholesky_solve(self._factor, corrected)
+        y = cholesky_solve(self._schur, self._equality @ free + residual)
         return free - self._inner @ y, y
 
 
 def _regularised(schur: Array) -> Array:
     """Factor of a positive semidefinite matrix, shifted as far as it is singular."""
-    factor = _cholesky(schur)
+    factor = cholesky(schur)
     shift = EQUALITY_SHIFT * max(float(np.abs(np.diagonal(schur)).max()), 1e-300)
     while factor is None:
         if not np.isfinite(shift):
             raise np.linalg.LinAlgError('the Schur complement is not finite')
-        factor = _cholesky(schur + shift * np.eye(len(schur)))
+        factor = cholesky(schur + shift * np.eye(len(schur)))
         shift *= 10.0
     return factor
 
 
 def _factorise(matrix: Array, memory: InertiaMemory) -> tuple[float, Array]:
-    factor = _cholesky(matrix)
+    factor = cholesky(matrix)
     if factor is not None:
         return 0.0, factor
     shift = FIRST_SHIFT if memory.last == 0.0 else max(LEAST_SHIFT, DECAY * memory.last)
     growth = FIRST_GROWTH if memory.last == 0.0 else GROWTH
     unit = np.eye(len(matrix))
     while shift < LARGEST_SHIFT:
-        factor = _cholesky(matrix + shift * unit)
+        factor = cholesky(matrix + shift * unit)
         if factor is not None:
             memory.last = shift
             return shift, factor
@@ -94,7 +94,8 @@ def _factorise(matrix: Array, memory: InertiaMemory) -> tuple[float, Array]:
     raise np.linalg.LinAlgError('the condensed matrix is not finite')
 
 
-def _cholesky(matrix: Array) -> Array | None:
+def cholesky(matrix: Array) -> Array | None:
+    """Lower Cholesky factor, or None if the matrix is not positive definite."""
     # Loads for long, and only this reference implementation needs it.
     from scipy.linalg.lapack import dpotrf
 
@@ -102,7 +103,8 @@ def _cholesky(matrix: Array) -> Array | None:
     return factor if info == 0 and np.isfinite(factor[-1, -1]) else None
 
 
-def _solve(factor: Array, right: Array) -> Array:
+def cholesky_solve(factor: Array, right: Array) -> Array:
+    """Solve with a matrix whose factor is given."""
     from scipy.linalg.lapack import dpotrs
 
     solution: Array = dpotrs(factor, right, lower=1)[0]

@@ -61,7 +61,8 @@ class NodeFunction:
         jacobian = ca.jacobian(rows, zs)
         row, column = (np.array(i, dtype=np.int32) for i in jacobian.sparsity().get_triplet())
         order = np.lexsort((column, row))
-        slopes = jacobian.nz[order.tolist()] if len(order) else ca.SX(0, 1)
+        nonzeros = jacobian.nonzeros()
+        slopes = ca.vertcat(*(nonzeros[i] for i in order)) if nonzeros else ca.SX(0, 1)
         first = ca.Function(
             'first', [zs, self.p], [ca.vertcat(cost, rows, ca.gradient(cost, zs), slopes)]
         )
@@ -119,4 +120,4 @@ class DerivedFunction:
 
 
 def _column(matrix: Any) -> Any:
-    return ca.vertcat(*matrix.nonzeros())
+    return ca.vertcat(*matrix.nonzeros()) if matrix.nnz() else ca.SX(0, 1)

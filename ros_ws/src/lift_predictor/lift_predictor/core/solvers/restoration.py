@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from lift_predictor.core.solvers.newton import cholesky, cholesky_solve
 from lift_predictor.core.solvers.scaling import ScaledProgramme
 
 Array = NDArray[np.float64]
@@ -17,8 +18,11 @@ FIRST_DAMPING, DAMPING_GROWTH, DAMPING_DECAY = 1e-6, 10.0, 0.1
 LARGEST_DAMPING = 1e12
 STATIONARY = 1e-8
 """Projected gradient, relative to the violation, at which a minimum is reached."""
-STALLED = 1e-10
-"""Relative decrease of the squared violation that counts as none, three times in a row."""
+HOPELESS = 0.1
+"""To the first order no change of the variables by 1 takes more than this share of the squared
+violation: what is left is a minimum that is not zero."""
+STALLED, STALLED_STEPS = 1e-3, 10
+"""Relative decrease of the squared violation that counts as none, so many times in a row."""
 
 
 @dataclass(frozen=True)
@@ -56,18 +60,21 @@ def restore(programme: ScaledProgramme, x: Array, goal: float, max_iterations: i
         held = ((x <= low) & (gradient > 0.0)) | ((x >= high) & (gradient < 0.0))
         free = np.flatnonzero(~held)
         steep = float(np.abs(gradient[free]).max(initial=0.0))
-        if steep <= STATIONARY * max(1.0, float(np.abs(violation).max())):
+        hopeless = float(np.abs(gradient[free]).sum()) <= HOPELESS * value
+        if steep <= STATIONARY * max(1.0, float(np.abs(violation).max())) or hopeless:
             return Restored(x, iteration, True)
         active = (violation != 0.0).astype(float)
         matrix = point.condensed(0.0, violation, active)[np.ix_(free, free)]
+        size = max(1.0, float(np.abs(np.diagonal(matrix)).max()))
         while True:
+            step = _descent(matrix + damping * size * np.eye(len(free)), gradient[free])
             trial = x.copy()
-            trial[free] += _descent(matrix, damping, gradient[free])
+            trial[free] += step
             trial = np.clip(trial, low, high)
             rows = programme.values(trial)[1]
             after = row_violation(programme, rows)
             new = 0.5 * float(after @ after)
-            # A row that is not finite makes the comparison false.
+            # A row or step that is not finite makes the comparison false.
             if new < value:
                 break
             damping *= DAMPING_GROWTH
@@ -76,7 +83,7 @@ def restore(programme: ScaledProgramme, x: Array, goal: float, max_iterations: i
         stalled = stalled + 1 if value - new <= STALLED * value else 0
         x, violation, value = trial, after, new
         damping = max(damping * DAMPING_DECAY, FIRST_DAMPING)
-        if stalled == 3:
+        if stalled == STALLED_STEPS:
             return Restored(x, iteration + 1, True)
     return Restored(x, max_iterations, False)
 
@@ -92,8 +99,7 @@ def row_violation(programme: ScaledProgramme, rows: Array) -> Array:
     return violation
 
 
-def _descent(matrix: Array, damping: float, gradient: Array) -> Array:
-    """Newton step of the matrix made positive by its eigenvalues' sizes and the damping."""
-    values, vectors = np.linalg.eigh(matrix)
-    sizes = np.abs(values) + damping * max(1.0, float(np.abs(values).max()))
-    return np.asarray(-vectors @ ((vectors.T @ gradient) / sizes))
+def _descent(matrix: Array, gradient: Array) -> Array:
+    """Newton step, or none (not a number) if the matrix is not positive."""
+    factor = cholesky(matrix)
+    return np.full(len(gradient), np.nan) if factor is None else -cholesky_solve(factor, gradient)

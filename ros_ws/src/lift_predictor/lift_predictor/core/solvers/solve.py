@@ -1,0 +1,121 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Solve a programme: by the compiled method where its functions are compiled, else in Python."""
+
+from __future__ import annotations
+
+import ctypes
+import time
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lift_predictor.core.solvers.compiled_assembler import CompiledAssembler
+from lift_predictor.core.solvers.programme import Programme
+from lift_predictor.core.solvers.solution import InteriorPointOptions, Solution, Status
+from lift_predictor.core.solvers.spline_programme import SplineProgramme
+
+Array = NDArray[np.float64]
+
+STATUS: Final = (
+    Status.OPTIMAL, Status.INFEASIBLE, Status.ITERATION_LIMIT, Status.TIME_LIMIT, Status.STUCK,
+    Status.NOT_FINITE,
+)  # fmt: skip
+"""In the order of the numbers in interior_point.c."""
+
+
+class _Settings(ctypes.Structure):
+    _fields_ = (
+        *((name, ctypes.c_double) for name in (
+            'tolerance', 'infeasible_violation', 'time_limit', 'barrier', 'bound_push',
+            'gradient_limit',
+        )),
+        ('max_iterations', ctypes.c_int),
+        ('warm', ctypes.c_int),
+    )  # fmt: skip
+
+
+class _Outcome(ctypes.Structure):
+    _fields_ = (
+        ('status', ctypes.c_int),
+        ('iterations', ctypes.c_int),
+        *((name, ctypes.c_double) for name in (
+            'objective', 'primal', 'dual', 'complementarity',
+        )),
+    )  # fmt: skip
+
+
+def solve(
+    programme: Programme,
+    x0: Array,
+    options: InteriorPointOptions | None = None,
+    warm: Solution | None = None,
+) -> Solution:
+    """Find a local minimum; parameters and result as of `interior_point.solve`.
+
+    Both ways do the same steps. Differences are those of rounding.
+    """
+    options = options or InteriorPointOptions()
+    if isinstance(programme, SplineProgramme) and isinstance(
+        programme.assembler, CompiledAssembler
+    ):
+        return _solve_compiled(programme, programme.assembler, x0, options, warm)
+    # Imports SciPy.
+    from lift_predictor.core.solvers import interior_point
+
+    return interior_point.solve(programme, x0, options, warm)
+
+
+def _solve_compiled(
+    programme: SplineProgramme,
+    assembler: CompiledAssembler,
+    x0: Array,
+    options: InteriorPointOptions,
+    warm: Solution | None,
+) -> Solution:
+    begin = time.perf_counter()
+    assembler.set_parameters(programme.parameters)
+    x = np.array(x0, dtype=float)
+    y, z = np.zeros(assembler.m), np.zeros(assembler.n)
+    if warm is not None:
+        y[:], z[:] = warm.row_multiplier, warm.bound_multiplier
+    settings = _Settings(
+        options.tolerance,
+        options.infeasible_violation,
+        options.time_limit,
+        options.barrier if warm is None else options.warm_barrier,
+        options.bound_push if warm is None else options.warm_bound_push,
+        options.gradient_limit,
+        options.max_iterations,
+        int(warm is not None),
+    )
+    outcome = _Outcome()
+    bounds = (programme.lower, programme.upper, programme.row_lower, programme.row_upper)
+    failed = assembler.library.lift_solve(
+        assembler.handle,
+        *(_pointer(bound) for bound in bounds),
+        ctypes.byref(settings),
+        *(_pointer(array) for array in (x, y, z)),
+        ctypes.byref(outcome),
+    )
+    if failed:
+        raise MemoryError('no memory for the interior-point method')
+    status = STATUS[outcome.status]
+    violated: tuple[tuple[str, float], ...] = ()
+    if status is not Status.OPTIMAL:
+        rows = programme.values(x)[1]
+        excess = np.maximum(programme.row_lower - rows, rows - programme.row_upper)
+        violated = tuple(
+            (programme.row_name(int(i)), float(excess[i]))
+            for i in np.argsort(-excess)[:3]
+            if excess[i] > options.infeasible_violation
+        )
+    return Solution(
+        status, x, outcome.objective, y, z, outcome.iterations, outcome.primal, outcome.dual,
+        outcome.complementarity, violated, time.perf_counter() - begin,
+    )  # fmt: skip
+
+
+def _pointer(array: Array) -> ctypes.c_void_p:
+    return ctypes.c_void_p(array.ctypes.data)
