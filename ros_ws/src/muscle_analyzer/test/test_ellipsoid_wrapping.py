@@ -9,7 +9,13 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from muscle_analyzer.core.ellipsoid_wrapping import closest_on_ellipsoid, wrap_ellipsoid
+from muscle_analyzer.core.ellipsoid_wrapping import (
+    AXIAL,
+    HYBRID,
+    MIDPOINT,
+    closest_on_ellipsoid,
+    wrap_ellipsoid,
+)
 from muscle_analyzer.core.wrapping import INSIDE, MISSED, PIERCED
 
 CHEST = np.array([0.07, 0.16, 0.12])
@@ -30,10 +36,11 @@ def piercing(draw, axes):
     return middle - before * direction, middle + after * direction
 
 
-def wrap(first, second, axes, axis=0, sign=0):
+def wrap(first, second, axes, axis=0, sign=0, method=HYBRID):
     first, second = np.array(first, float), np.array(second, float)
     near, far = np.zeros(3), np.zeros(3)
-    contact, arc = wrap_ellipsoid(first, second, np.array(axes, float), axis, sign, near, far)
+    axes = np.array(axes, float)
+    contact, arc = wrap_ellipsoid(first, second, axes, axis, sign, method, near, far)
     whole = np.linalg.norm(near - first) + arc + np.linalg.norm(second - far)
     return contact, near, far, arc, whole
 
@@ -114,3 +121,34 @@ def test_inside_and_missed():
     assert wrap((0.0, 0.0, 0.01), (0.0, 0.0, 0.5), CHEST)[0] == INSIDE
     assert wrap((0.08, 0.0, -0.2), (0.08, 0.0, 0.2), CHEST)[0] == MISSED
     assert wrap((0.0, 0.0, 0.2), (0.0, 0.0, 0.5), CHEST)[0] == MISSED
+
+
+def plane_of(first, near, far, second):
+    normal = np.cross(near - first, far - first)
+    assert np.dot(normal, second - first) == pytest.approx(0.0, abs=1e-12)
+    return normal / np.linalg.norm(normal)
+
+
+@pytest.mark.parametrize('method', [MIDPOINT, AXIAL])
+def test_guides_of_the_other_methods_lie_in_the_plane_of_the_path(method):
+    """The guide is the surface point closest to the chord's middle, or to where x is zero."""
+    first, second = np.array([-0.2, 0.05, 0.03]), np.array([0.25, 0.02, -0.04])
+    contact, near, far, *_ = wrap(first, second, CHEST, method=method)
+    assert contact == PIERCED
+    normal = plane_of(first, near, far, second)
+    way = second - first
+    a, d = first / CHEST, way / CHEST
+    root = np.sqrt((a @ d) ** 2 - (d @ d) * (a @ a - 1.0))
+    share = -(a @ d) / (d @ d) if method == MIDPOINT else -first[0] / way[0]
+    assert abs(-(a @ d) / (d @ d) - share) < root / (d @ d)
+    guide = np.empty(3)
+    closest_on_ellipsoid(CHEST, first + share * way, -1 if method == MIDPOINT else 0, guide)
+    assert normal @ (guide - first) == pytest.approx(0.0, abs=1e-10)
+
+
+def test_all_methods_agree_on_a_sphere():
+    ends = (-0.2, 0.05, 0.03), (0.25, 0.02, -0.04)
+    lengths = [wrap(*ends, [0.1] * 3, method=method)[-1] for method in (HYBRID, MIDPOINT, AXIAL)]
+    assert lengths[1] == pytest.approx(lengths[0], abs=1e-9)
+    # The axial guide is not quite normal to the segment: the plane is another one.
+    assert lengths[2] == pytest.approx(lengths[0], rel=0.02)

@@ -17,6 +17,7 @@ from muscle_analyzer.core.functions import (
     piecewise_linear,
     polynomial,
     simm_spline,
+    smooth_step,
 )
 
 X = np.array([0.0, 0.17, 0.35, 0.6, 0.7, 1.1, 1.3])
@@ -79,3 +80,24 @@ def test_compiled_evaluation_equals_the_plain_one():
 def test_bad_points_are_refused(x, y, named):
     with pytest.raises(OsimFormatError, match=named):
         simm_spline(x, y)
+
+
+def test_smooth_step_is_level_at_both_ends():
+    step = smooth_step(1.0, 3.0, 5.0, -1.0)
+    assert step.derivatives(0.0) == (5.0, 0.0, 0.0)
+    assert step.derivatives(4.0) == (-1.0, 0.0, 0.0)
+    assert step.derivatives(1.0) == pytest.approx((5.0, 0.0, 0.0))
+    assert step.derivatives(3.0 - 1e-12) == pytest.approx((-1.0, 0.0, 0.0), abs=1e-9)
+    # Halfway: the mean, and 15/8 of the mean slope.
+    assert step.derivatives(2.0) == pytest.approx((2.0, -3.0 * 15.0 / 8.0, 0.0))
+
+
+def test_step_without_width_is_refused():
+    with pytest.raises(OsimFormatError, match=r'ends at 1\.0, not after its start at 1\.0'):
+        smooth_step(1.0, 1.0, 0.0, 1.0)
+
+
+def test_shifted_function_has_the_same_slopes():
+    spline = simm_spline(X, Y)
+    value, slope, bend = spline.derivatives(0.4)
+    assert spline.shifted(0.7).derivatives(0.4) == pytest.approx((value + 0.7, slope, bend))

@@ -12,11 +12,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from muscle_analyzer.core.exceptions import UnsupportedElementError
 from muscle_analyzer.core.kinematics import body_jacobians, forward_kinematics
 from muscle_analyzer.core.multibody import compile_model
 from muscle_analyzer.core.muscle_path_table import path_table
-from muscle_analyzer.core.muscle_paths import body_wrenches, muscle_paths
+from muscle_analyzer.core.muscle_paths import body_wrenches, muscle_paths, posture_paths
 from muscle_analyzer.core.osim_reader import read_osim
 from muscle_analyzer.core.subject_model import lifting_model_path
 
@@ -50,8 +49,7 @@ def reference(which):
 def paths_at(model, table, q):
     zero = np.zeros_like(q)
     bodies = forward_kinematics(model.tree, q, zero, zero)
-    jacobian = body_jacobians(model.tree, bodies)
-    return muscle_paths(table, bodies.position, bodies.rotation, jacobian)
+    return posture_paths(table, bodies, body_jacobians(model.tree, bodies))
 
 
 def our_paths(which, geodesic=False):
@@ -140,17 +138,3 @@ def test_forces_on_the_bodies_balance_and_do_the_work_of_the_moment_arms():
     assert np.abs(wrenches.sum(axis=0)).max() < 1e-9
     torque = np.einsum('bi,bij->j', wrenches, jacobian)
     assert torque == pytest.approx(paths.moment_arm.T @ force, abs=1e-9)
-
-
-def test_moving_path_points_are_refused(tmp_path):
-    text = MODELS['generic'].read_text(encoding='utf-8')
-    old = '<PathPoint name="addbrev_r-P1">'
-    begin = text.index(old)
-    end = text.index('</PathPoint>', begin)
-    point = text[begin:end].replace('<PathPoint', '<ConditionalPathPoint')
-    point += '<socket_coordinate>/jointset/hip_r/hip_flexion_r</socket_coordinate>'
-    point += '<range>-1 1</range></ConditionalPathPoint>'
-    path = tmp_path / 'conditional.osim'
-    path.write_text(text[:begin] + point + text[end + len('</PathPoint>') :], encoding='utf-8')
-    with pytest.raises(UnsupportedElementError, match='addbrev_r-P1 is conditional'):
-        path_table(compile_model(read_osim(path)))

@@ -89,13 +89,70 @@ def test_unknown_elements_are_named(write_model, old, new, named):
         ('/bodyset/upper</socket_parent>', '/bodyset/arm</socket_parent>', '/bodyset/arm'),
         ('<radius>0.02', '<radius>0', 'not positive'),
         ('<optimal_fiber_length>0.1', '<optimal_fiber_length>0', '<optimal_fiber_length>: 0'),
-        ('Version="40000"', 'Version="30000"', '30000'),
+        ('Version="40000"', 'Version="20302"', '20302'),
         ('</OpenSimDocument>', '', 'cannot be read as XML'),
     ],
 )
 def test_bad_values_are_named(write_model, old, new, named):
     with pytest.raises(OsimFormatError, match=named):
         read_osim(write_model((old, new)))
+
+
+def test_values_that_are_not_given_come_from_the_files_defaults(write_model):
+    """OpenSim takes them from the object of the same type in <defaults>, of muscles as well."""
+    defaults = """<defaults><DeGrooteFregly2016Muscle name="default">
+      <max_isometric_force>77</max_isometric_force><default_activation>0.3</default_activation>
+      </DeGrooteFregly2016Muscle></defaults><gravity>"""
+    given = '<max_isometric_force>500</max_isometric_force>'
+    (muscle,) = read_osim(write_model(('<gravity>', defaults), (given, ''))).muscles
+    assert muscle.max_isometric_force == 77.0
+    assert muscle.properties['default_activation'] == 0.3
+    (muscle,) = read_osim(write_model(('<gravity>', defaults))).muscles
+    assert muscle.max_isometric_force == 500.0
+
+
+@pytest.mark.parametrize(
+    'tag', ['Millard2012EquilibriumMuscle', 'Thelen2003Muscle', 'DeGrooteFregly2016Muscle']
+)
+def test_muscles_of_three_types_are_read(write_model, tag):
+    (muscle,) = read_osim(write_model(('DeGrooteFregly2016Muscle', tag))).muscles
+    assert muscle.kind == tag
+
+
+@pytest.mark.parametrize('tag', ['Schutte1993Muscle_Deprecated', 'RigidTendonMuscle'])
+def test_other_muscles_are_named(write_model, tag):
+    with pytest.raises(UnsupportedElementError, match=f'<{tag} name="flexor"> is not modelled'):
+        read_osim(write_model(('DeGrooteFregly2016Muscle', tag)))
+
+
+def test_path_that_is_no_row_of_points_is_named(write_model):
+    with pytest.raises(UnsupportedElementError, match='name="flexor">: path is no <GeometryPath>'):
+        read_osim(write_model(('GeometryPath', 'FunctionBasedPath')))
+
+
+def test_second_wrap_object_of_a_name_is_left_out(write_model):
+    """OpenSim resolves a path's wrap object to the first of its name."""
+    drum = """<WrapObjectSet><objects><WrapSphere name="drum"><radius>0.1</radius></WrapSphere>
+      </objects></WrapObjectSet>"""
+    model = read_osim(write_model(('<Body name="lower">', '<Body name="lower">' + drum)))
+    (surface,) = model.wrap_objects
+    assert (surface.kind, surface.frame.body) == ('cylinder', 'upper')
+    assert 'WrapSphere drum of /bodyset/lower' in model.left_out
+
+
+@pytest.mark.parametrize('quadrant', ['+X', 'x', 'X'])
+def test_quadrants_are_read_as_opensim_writes_them(write_model, quadrant):
+    path = write_model(('<quadrant>all', f'<quadrant>{quadrant}'))
+    assert read_osim(path).wrap_object('drum').quadrant == 'x'
+
+
+def test_offset_frames_without_offset_and_relative_sockets(write_model):
+    offset = '<translation>0 0 0</translation><orientation>0 0 0</orientation>'
+    plain = '<socket_parent_frame>/bodyset/lower'
+    relative = '<socket_parent_frame>../../bodyset/lower'
+    model = read_osim(write_model((offset, ''), (plain, relative)))
+    np.testing.assert_array_equal(model.joint('elbow').child.translation, np.zeros(3))
+    assert model.markers[0].body == 'lower'
 
 
 def test_missing_file_is_named(tmp_path):

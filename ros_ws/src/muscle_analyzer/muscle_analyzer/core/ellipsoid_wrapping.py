@@ -4,10 +4,11 @@
 Path of a muscle over an ellipsoid, compiled.
 
 As in OpenSim's ``WrapEllipsoid`` a segment wraps when it pierces the ellipsoid, and its path lies
-in a plane through its ends and one point of the surface, the *guide*.  OpenSim's 'hybrid' method,
-followed here, takes the guide from where the segment crosses the coordinate plane most normal to
-it, or, if no axis is nearly parallel to the segment, from the mean direction to the surface along
-the segment, and blends between the two; a guide on the passive half is mirrored.
+in a plane through its ends and one point of the surface, the *guide*.  OpenSim's 'axial' method
+takes the guide from where the segment crosses the coordinate plane most normal to it, 'midpoint'
+from the middle of the pierced part.  'hybrid' is as 'axial', or, if no axis is nearly parallel to
+the segment, takes the mean direction to the surface along the segment, and blends between the two.
+A guide on the passive half is mirrored.
 
 Here the tangent points are found in closed form: divided by its half axes the ellipsoid is a unit
 sphere, its section a circle, and lines tangent to the one stay tangent to the other.
@@ -29,6 +30,8 @@ Index = int | np.int64
 #: the crossing of the coordinate plane does; share of the pierced length near either end in which
 #: the crossing loses its weight (constants of OpenSim's hybrid method).
 PARALLEL_NONE, PARALLEL_FULL, END_SHARE = 0.7073, 0.9, 0.3
+#: Methods of choosing the guide.
+HYBRID, MIDPOINT, AXIAL = 0, 1, 2
 #: Nodes and weights of the mean direction, for each part of the chord between coordinate planes
 #: (where the closest point may jump).  OpenSim takes 298 evenly spaced samples instead.
 _RAW_NODES, _RAW_WEIGHTS = np.polynomial.legendre.leggauss(6)
@@ -135,7 +138,9 @@ def _mean_direction(axes: Array, enter: Array, leave: Array, held: Index, mean: 
 
 
 @njit(cache=True, error_model='numpy')
-def _guide(axes: Array, enter: Array, leave: Array, axis: int, sign: int, guide: Array) -> None:
+def _guide(
+    axes: Array, enter: Array, leave: Array, axis: int, sign: int, method: int, guide: Array
+) -> None:
     """Fill `guide` with the surface point that fixes the plane of the path."""
     # Typed integers: a literal would make the compiler specialise the functions they are given to.
     best: Index = np.int64(0)
@@ -147,18 +152,22 @@ def _guide(axes: Array, enter: Array, leave: Array, axis: int, sign: int, guide:
             best = i
     parallel = abs(leave[best] - enter[best]) / math.sqrt(square)
     crossing = enter[best] / (enter[best] - leave[best])
-    if parallel > PARALLEL_NONE:
+    if method == HYBRID and parallel > PARALLEL_NONE:
         weight = min(1.0, max(0.0, min(crossing, 1.0 - crossing) / END_SHARE))
         parallel = PARALLEL_NONE + weight * (parallel - PARALLEL_NONE)
     fan = (PARALLEL_FULL - parallel) / (PARALLEL_FULL - PARALLEL_NONE)
     fan = min(1.0, max(0.0, fan))
 
     point = np.empty(3)
-    if fan < 1.0:
+    if method == MIDPOINT:
+        for i in range(3):
+            point[i] = 0.5 * (enter[i] + leave[i])
+        closest_on_ellipsoid(axes, point, none, guide)
+    elif method == AXIAL or fan < 1.0:
         for i in range(3):
             point[i] = enter[i] + crossing * (leave[i] - enter[i])
         closest_on_ellipsoid(axes, point, best, guide)
-    if fan > 0.0:
+    if method == HYBRID and fan > 0.0:
         by_fan = np.empty(3)
         _mean_direction(axes, enter, leave, none, by_fan)
         # A point one mean half axis away, as OpenSim scales lengths.
@@ -183,13 +192,14 @@ def wrap_ellipsoid(
     axes: Array,
     axis: int,
     sign: int,
+    method: int,
     tangent_first: Array,
     tangent_second: Array,
 ) -> tuple[int, float]:
     """
     Wrap one segment over an ellipsoid; arguments and results as `wrap_cylinder`.
 
-    `axes` are the half axes along x, y and z [m].
+    `axes` are the half axes along x, y and z [m], `method` is `HYBRID`, `MIDPOINT` or `AXIAL`.
     """
     # In units of the half axes the ellipsoid is the unit sphere.
     a, b, along = np.empty(3), np.empty(3), np.empty(3)
@@ -213,7 +223,7 @@ def wrap_ellipsoid(
     for i in range(3):
         p[i] = axes[i] * (a[i] + enter * along[i])
         q[i] = axes[i] * (a[i] + leave * along[i])
-    _guide(axes, p, q, axis, sign, guide)
+    _guide(axes, p, q, axis, sign, method, guide)
     for i in range(3):
         guide[i] = guide[i] / axes[i] - a[i]
     normal = _cross(along, guide)

@@ -19,6 +19,10 @@ class ModelCompilationError(MuscleAnalyzerError):
     """A model that was read cannot be turned into a tree of bodies and joints."""
 
 
+class ModelCacheError(MuscleAnalyzerError):
+    """An entry of the model cache is damaged; `load_model` reads the model's file instead."""
+
+
 class UnknownNameError(MuscleAnalyzerError):
     """A body, joint, coordinate, point or option was asked for that does not exist."""
 

@@ -51,6 +51,12 @@ class PiecewisePolynomial:
         """Return the function multiplied by a constant factor."""
         return PiecewisePolynomial(self.switches, self.anchors, self.coefficients * factor)
 
+    def shifted(self, offset: float) -> PiecewisePolynomial:
+        """Return the function with a constant added."""
+        coefficients = self.coefficients.copy()
+        coefficients[:, 0] += offset
+        return PiecewisePolynomial(self.switches, self.anchors, coefficients)
+
     def derivatives(self, x: float) -> tuple[float, float, float]:
         """Return value, first and second derivative at `x`."""
         piece = int(np.searchsorted(self.switches, x, side='right'))
@@ -103,6 +109,29 @@ def piecewise_linear(x: ArrayLike, y: ArrayLike) -> PiecewisePolynomial:
     knots, values = _checked_points(x, y)
     slopes = np.diff(values) / np.diff(knots)
     return PiecewisePolynomial(knots[1:-1], knots[:-1], np.column_stack([values[:-1], slopes]))
+
+
+def smooth_step(start: float, end: float, low: float, high: float) -> PiecewisePolynomial:
+    """Return a step from `low` at `start` to `high` at `end`, level outside.
+
+    Between them it is the polynomial of fifth degree whose first and second derivatives vanish at
+    both ends, as OpenSim's `StepFunction` has it.
+
+    Raises
+    ------
+    OsimFormatError
+        If the end is not after the start.
+    """
+    width, rise = end - start, high - low
+    if not width > 0.0:
+        raise OsimFormatError(f'a step ends at {end}, not after its start at {start}')
+    inner = [low, 0.0, 0.0, 10.0 * rise / width**3, -15.0 * rise / width**4, 6.0 * rise / width**5]
+    level = [0.0] * 5
+    return PiecewisePolynomial(
+        np.array([start, end]),
+        np.array([start, start, end]),
+        np.array([[low, *level], inner, [high, *level]]),
+    )
 
 
 def simm_spline(x: ArrayLike, y: ArrayLike) -> PiecewisePolynomial:

@@ -55,6 +55,8 @@ class BodyState(NamedTuple):
         Spatial axis of each elementary motion about the ground's origin.
     tree_gain, gain : (n_e,) arrays
         Rate of each elementary motion per rate of its tree coordinate and of its independent one.
+    coordinate, coordinate_gain : (n_x,) arrays
+        All tree coordinates, rad or m, and their rates per rate of the independent one.
     """
 
     position: Array
@@ -67,6 +69,8 @@ class BodyState(NamedTuple):
     screw: Array
     tree_gain: Array
     gain: Array
+    coordinate: Array
+    coordinate_gain: Array
 
 
 @njit(cache=True)
@@ -244,7 +248,9 @@ def forward_kinematics(tree: Tree, q: Array, qd: Array, qdd: Array) -> BodyState
         al[b, 0], al[b, 1], al[b, 2] = lx, ly, lz
         v[b, 0], v[b, 1], v[b, 2] = vx + cx, vy + cy, vz + cz
         a[b, 0], a[b, 1], a[b, 2] = ax + ex + dx, ay + ey + dy, az + ez + dz
-    return BodyState(p, rot, w, v, al, a, pivot, screw, tree_gain, gain)
+    return BodyState(
+        p, rot, w, v, al, a, pivot, screw, tree_gain, gain, x.value, x.gain
+    )
 
 
 @njit(cache=True)

@@ -9,16 +9,21 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from muscle_analyzer.core.exceptions import UnsupportedElementError
+from muscle_analyzer.core.ellipsoid_wrapping import AXIAL, HYBRID, MIDPOINT
+from muscle_analyzer.core.exceptions import OsimFormatError, UnsupportedElementError
+from muscle_analyzer.core.functions import FunctionTable, function_table
 from muscle_analyzer.core.multibody import MultibodyModel
-from muscle_analyzer.core.osim_model import Muscle, OsimModel
+from muscle_analyzer.core.osim_model import Muscle, OsimModel, PathPoint
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 #: Kinds of wrap object the path functions know.
-CYLINDER, ELLIPSOID = 0, 1
-_KINDS = {'cylinder': CYLINDER, 'ellipsoid': ELLIPSOID}
+CYLINDER, ELLIPSOID, SPHERE, TORUS = 0, 1, 2, 3
+_KINDS = {'cylinder': CYLINDER, 'ellipsoid': ELLIPSOID, 'sphere': SPHERE, 'torus': TORUS}
+_METHODS = {'hybrid': HYBRID, 'midpoint': MIDPOINT, 'axial': AXIAL}
+#: A conditional point is there up to so far outside its range (constant of OpenSim), rad or m.
+CONDITION_MARGIN = 1e-5
 #: Active halves of a wrap object: coordinate and sign; sign 0 is the whole surface.
 _HALVES = {
     'all': (0, 0),
@@ -31,6 +36,44 @@ _HALVES = {
 }
 
 
+class WrapTable(NamedTuple):
+    """
+    Uses of wrap objects by all muscles of one model.
+
+    Attributes
+    ----------
+    start : (n_m + 1,)
+    kind, body : (n_w,)
+    rotation, translation : (n_w, 3, 3), (n_w, 3)
+        Body from wrap object's frame [m].
+    dimensions : (n_w, 3)
+        Cylinder: radius, length; ellipsoid: half axes; sphere: radius; torus: radius of the tube
+        and of its centre line [m].
+    axis, sign : (n_w,)
+        Active half.
+    method : (n_w,)
+        How an ellipsoid's guide is chosen.
+    first, last : (n_w,)
+        First and last point between which the path may wrap.
+    geodesic : (1,)
+        Whether a path over a single cylinder is its geodesic or OpenSim's construction
+        (see `wrapping`); over more than one it always is the geodesic.
+    """
+
+    start: IntArray
+    kind: IntArray
+    body: IntArray
+    rotation: Array
+    translation: Array
+    dimensions: Array
+    axis: IntArray
+    sign: IntArray
+    method: IntArray
+    first: IntArray
+    last: IntArray
+    geodesic: NDArray[np.bool_]
+
+
 class PathTable(NamedTuple):
     """
     Paths of all muscles of one model.
@@ -41,47 +84,41 @@ class PathTable(NamedTuple):
         Points of muscle m are ``point_start[m]`` to ``point_start[m + 1] - 1``; likewise the
         other ``*_start``.
     point_body, point_location : (n_p,), (n_p, 3)
-        Body and place in it [m].
-    wrap_start : (n_m + 1,)
-    wrap_kind, wrap_body : (n_w,)
-    wrap_rotation, wrap_translation : (n_w, 3, 3), (n_w, 3)
-        Body from wrap object's frame [m].
-    wrap_dimensions : (n_w, 3)
-        Cylinder: radius, length; ellipsoid: half axes [m].
-    wrap_axis, wrap_sign : (n_w,)
-        Active half.
-    wrap_first, wrap_last : (n_w,)
-        First and last point between which the path may wrap.
+        Body and place in it [m]; of a moving point where its coordinates are zero.
+    point_condition, point_motion : (n_p,)
+        Number of a point's condition and of its motion, or -1.
+    condition_coordinate, condition_range : (n_c,), (n_c, 2)
+        Tree coordinate, and the values between which a conditional point is there [rad or m].
+    motion_coordinate, motion_independent, motion_function : (n_d, 3)
+        Tree coordinates that move a point along x, y and z of its body, the independent ones
+        behind them (-1 if locked), and the numbers of the functions.
+    functions : FunctionTable
+    wraps : WrapTable
     body_start, body_index : (n_m + 1,), (n_e,)
         Bodies that a muscle acts on.
     crossed_start, crossed_index : (n_m + 1,), (n_k,)
         Independent coordinates that can change a muscle's length.
     longest : (1,)
         Most points that a path can have, wrap points counted.
-    geodesic : (1,)
-        Whether a path over a single cylinder is its geodesic or OpenSim's construction
-        (see `wrapping`); over more than one it always is the geodesic.
     """
 
     point_start: IntArray
     point_body: IntArray
     point_location: Array
-    wrap_start: IntArray
-    wrap_kind: IntArray
-    wrap_body: IntArray
-    wrap_rotation: Array
-    wrap_translation: Array
-    wrap_dimensions: Array
-    wrap_axis: IntArray
-    wrap_sign: IntArray
-    wrap_first: IntArray
-    wrap_last: IntArray
+    point_condition: IntArray
+    point_motion: IntArray
+    condition_coordinate: IntArray
+    condition_range: Array
+    motion_coordinate: IntArray
+    motion_independent: IntArray
+    motion_function: IntArray
+    functions: FunctionTable
+    wraps: WrapTable
     body_start: IntArray
     body_index: IntArray
     crossed_start: IntArray
     crossed_index: IntArray
     longest: IntArray
-    geodesic: NDArray[np.bool_]
 
 
 def path_table(multibody: MultibodyModel, geodesic: bool = False) -> PathTable:
@@ -97,9 +134,10 @@ def path_table(multibody: MultibodyModel, geodesic: bool = False) -> PathTable:
 
     Raises
     ------
+    OsimFormatError
+        For a path point that depends on a coordinate that does not exist.
     UnsupportedElementError
-        For a path point that moves in its body, or a wrap object or method that is not modelled;
-        names it.
+        For a wrap object, quadrant or method that is not modelled; names it.
     """
     model = multibody.source
     wraps = [
@@ -110,13 +148,8 @@ def path_table(multibody: MultibodyModel, geodesic: bool = False) -> PathTable:
     ]
     owners = [row[0] for row in wraps]
     points = [point for muscle in model.muscles for point in muscle.points]
-    for muscle in model.muscles:
-        for point in muscle.points:
-            if point.kind != 'fixed':
-                raise UnsupportedElementError(
-                    f'{model.source}: muscle {muscle.name}: path point {point.name} is '
-                    f'{point.kind}; only fixed path points are modelled'
-                )
+    conditions = [point for point in points if point.kind == 'conditional']
+    motions = [point for point in points if point.kind == 'moving']
     point_body = [multibody.body_index(point.body) for point in points]
     point_start = _starts([len(muscle.points) for muscle in model.muscles])
     wrap_start = _starts([owners.count(muscle.name) for muscle in model.muscles])
@@ -128,29 +161,53 @@ def path_table(multibody: MultibodyModel, geodesic: bool = False) -> PathTable:
         )
     ]
     driven = _driven_motions(multibody)
-    crossed = [_crossed(driven, body) for body in bodies]
+    moved_by = np.array(
+        [[_coordinate(multibody, p, name) for name in p.location_coordinates] for p in motions],
+        np.int64,
+    ).reshape(-1, 3)
+    independent = multibody.tree.independent[moved_by]
+    point_motion = _numbers_of('moving', points)
+    crossed = []
+    for begin, end, body in zip(point_start[:-1], point_start[1:], bodies, strict=True):
+        moving = [number for number in point_motion[begin:end] if number >= 0]
+        by_motion = {int(q) for q in independent[moving].ravel() if q >= 0}
+        crossed.append(sorted({*_crossed(driven, body), *by_motion}))
     longest = (np.diff(point_start) + 2 * np.diff(wrap_start)).max(initial=0)
     n_w = len(wraps)
     return PathTable(
         point_start=point_start,
         point_body=np.array(point_body, np.int64),
         point_location=np.array([point.location for point in points]).reshape(-1, 3),
-        wrap_start=wrap_start,
-        wrap_kind=np.array([row[1] for row in wraps], np.int64),
-        wrap_body=np.array(wrap_body, np.int64),
-        wrap_rotation=np.array([row[3] for row in wraps]).reshape(n_w, 3, 3),
-        wrap_translation=np.array([row[4] for row in wraps]).reshape(n_w, 3),
-        wrap_dimensions=np.array([row[5] for row in wraps]).reshape(n_w, 3),
-        wrap_axis=np.array([row[6][0] for row in wraps], np.int64),
-        wrap_sign=np.array([row[6][1] for row in wraps], np.int64),
-        wrap_first=np.array([row[7] for row in wraps], np.int64),
-        wrap_last=np.array([row[8] for row in wraps], np.int64),
+        point_condition=_numbers_of('conditional', points),
+        point_motion=point_motion,
+        condition_coordinate=np.array(
+            [_coordinate(multibody, p, p.coordinate) for p in conditions], np.int64
+        ),
+        condition_range=np.array([p.range for p in conditions]).reshape(-1, 2)
+        + [-CONDITION_MARGIN, CONDITION_MARGIN],
+        motion_coordinate=moved_by,
+        motion_independent=independent,
+        motion_function=np.arange(3 * len(motions), dtype=np.int64).reshape(-1, 3),
+        functions=function_table([f for p in motions for f in p.location_functions]),
+        wraps=WrapTable(
+            start=wrap_start,
+            kind=np.array([row[1] for row in wraps], np.int64),
+            body=np.array(wrap_body, np.int64),
+            rotation=np.array([row[3] for row in wraps]).reshape(n_w, 3, 3),
+            translation=np.array([row[4] for row in wraps]).reshape(n_w, 3),
+            dimensions=np.array([row[5] for row in wraps]).reshape(n_w, 3),
+            axis=np.array([row[6][0] for row in wraps], np.int64),
+            sign=np.array([row[6][1] for row in wraps], np.int64),
+            method=np.array([row[7] for row in wraps], np.int64),
+            first=np.array([row[8] for row in wraps], np.int64),
+            last=np.array([row[9] for row in wraps], np.int64),
+            geodesic=np.array([geodesic]),
+        ),
         body_start=_starts([len(body) for body in bodies]),
         body_index=np.array([b for body in bodies for b in body], np.int64),
         crossed_start=_starts([len(cross) for cross in crossed]),
         crossed_index=np.array([c for cross in crossed for c in cross], np.int64),
         longest=np.array([longest], np.int64),
-        geodesic=np.array([geodesic]),
     )
 
 
@@ -160,7 +217,7 @@ def _starts(counts: list[int]) -> IntArray:
 
 def _wrap_row(
     model: OsimModel, multibody: MultibodyModel, muscle: Muscle, number: int
-) -> tuple[str, int, int, Array, Array, Array, tuple[int, int], int, int]:
+) -> tuple[str, int, int, Array, Array, Array, tuple[int, int], int, int, int]:
     """Give one use of a wrap object as a row of the table, after its muscle's name."""
     use = muscle.wraps[number]
     surface = model.wrap_object(use.wrap_object)
@@ -169,7 +226,7 @@ def _wrap_row(
         raise UnsupportedElementError(f'{where}: kind {surface.kind} is not modelled')
     if surface.quadrant not in _HALVES:
         raise UnsupportedElementError(f'{where}: quadrant {surface.quadrant} is not modelled')
-    if surface.kind == 'ellipsoid' and use.method != 'hybrid':
+    if use.method not in _METHODS:
         raise UnsupportedElementError(f'{where}: method {use.method} is not modelled')
     dimensions = np.zeros(3)
     dimensions[: len(surface.dimensions)] = surface.dimensions
@@ -182,9 +239,26 @@ def _wrap_row(
         surface.frame.translation,
         dimensions,
         _HALVES[surface.quadrant],
+        _METHODS[use.method],
         first - 1 if first >= 1 else 0,
         last - 1 if last >= 1 else len(muscle.points) - 1,
     )
+
+
+def _numbers_of(kind: str, points: list[PathPoint]) -> IntArray:
+    """Count the points of one kind, -1 for the others."""
+    is_kind = np.array([point.kind == kind for point in points], dtype=np.bool_)
+    return np.where(is_kind, np.cumsum(is_kind) - 1, -1).astype(np.int64)
+
+
+def _coordinate(multibody: MultibodyModel, point: PathPoint, name: str | None) -> int:
+    """Give the index of a coordinate that a path point depends on among all of the tree."""
+    names = multibody.tree_coordinate_names
+    if name not in names:
+        raise OsimFormatError(
+            f'{multibody.source.source}: path point {point.name}: no coordinate {name!r}'
+        )
+    return names.index(name)
 
 
 def _driven_motions(multibody: MultibodyModel) -> list[list[set[int]]]:

@@ -7,27 +7,25 @@ A muscle pulls with unit force along its path; path points and points where it l
 object push on their bodies.  The moment arm about a coordinate is the generalised force of these
 pushes, which is minus the derivative of the length because the points lie where the length is
 stationary (Sherman, Seth and Delp 2013, What is a moment arm?).  A coordinate that drives others
-through couplers counts all of them.
+through couplers counts all of them.  A point that moves in its body with a coordinate does work
+along its way as well.
 """
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from muscle_analyzer.core.ellipsoid_wrapping import wrap_ellipsoid
-from muscle_analyzer.core.muscle_path_table import CYLINDER, PathTable
-from muscle_analyzer.core.wrapping import INSIDE, MISSED, PIERCED, POSSIBLE, wrap_cylinder
+from muscle_analyzer.core.functions import evaluate
+from muscle_analyzer.core.kinematics import BodyState
+from muscle_analyzer.core.muscle_path_table import PathTable
+from muscle_analyzer.core.path_wrapping import distance, out_of, path_length, wrap_path
 
 Array = NDArray[np.float64]
-
-#: Rounds over the wrap objects of one path until its length settles, as in OpenSim, but to a
-#: tighter tolerance [m] so that the result does not depend on it.
-WRAP_ROUNDS, WRAP_TOLERANCE = 8, 1e-9
+IntArray = NDArray[np.int64]
 
 
 class MusclePaths(NamedTuple):
@@ -53,183 +51,81 @@ class MusclePaths(NamedTuple):
 
 
 @njit(cache=True, error_model='numpy')
-def _distance(a: Array, b: Array) -> float:
-    return math.sqrt((b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2 + (b[2] - a[2]) ** 2)
-
-
-@njit(cache=True, error_model='numpy')
-def _into(rotation: Array, origin: Array, point: Array, out: Array) -> None:
-    """Express a ground point in a frame."""
-    for i in range(3):
-        out[i] = 0.0
-        for j in range(3):
-            out[i] += rotation[j, i] * (point[j] - origin[j])
-
-
-@njit(cache=True, error_model='numpy')
-def _out_of(rotation: Array, origin: Array, point: Array, out: Array) -> None:
-    """Express a point of a frame in ground axes."""
-    for i in range(3):
-        out[i] = origin[i]
-        for j in range(3):
-            out[i] += rotation[i, j] * point[j]
-
-
-@njit(cache=True, error_model='numpy')
-def _path_length(point: Array, owner: NDArray[np.int64], arc: Array, n: int) -> float:
-    """Add up a path; two neighbours of one wrap object are joined by its arc."""
-    length = 0.0
-    for k in range(n - 1):
-        if owner[k] < 0 and owner[k] == owner[k + 1]:
-            length += arc[k]
-        else:
-            length += _distance(point[k], point[k + 1])
-    return length
-
-
-@njit(cache=True, error_model='numpy')
-def _best_wrap(
-    table: PathTable,
-    use: int,
-    rotation: Array,
-    origin: Array,
-    point: Array,
-    owner: NDArray[np.int64],
-    n: int,
-    geodesic: bool,
-    best: Array,
-) -> tuple[int, int, float]:
-    """
-    Find the segment of a path that wraps over an object, and its tangent points.
-
-    The first segment that pierces the object is taken; otherwise the one whose wrap lengthens
-    the path least.  Returns the segment (-1 if none), the last contact and the arc length.
-    """
-    ends = np.empty((4, 3))
-    found, contact, arc, least = -1, MISSED, 0.0, np.inf
-    for k in range(n - 1):
-        start_late = owner[k] >= 0 and owner[k] < table.wrap_first[use]
-        end_early = owner[k + 1] >= 0 and owner[k + 1] > table.wrap_last[use]
-        if start_late or end_early or (owner[k] < 0 and owner[k] == owner[k + 1]):
-            continue
-        _into(rotation, origin, point[k], ends[0])
-        _into(rotation, origin, point[k + 1], ends[1])
-        dimensions, axis = table.wrap_dimensions[use], table.wrap_axis[use]
-        sign = table.wrap_sign[use]
-        if table.wrap_kind[use] == CYLINDER:
-            contact, along = wrap_cylinder(
-                ends[0], ends[1], dimensions, axis, sign, geodesic, ends[2], ends[3]
-            )
-        else:
-            contact, along = wrap_ellipsoid(
-                ends[0], ends[1], dimensions, axis, sign, ends[2], ends[3]
-            )
-        if contact < POSSIBLE:
-            continue
-        longer = _distance(ends[0], ends[2]) + along + _distance(ends[3], ends[1])
-        longer -= _distance(ends[0], ends[1])
-        if contact == PIERCED or longer < least:
-            found, arc, least = k, along, longer
-            _out_of(rotation, origin, ends[2], best[0])
-            _out_of(rotation, origin, ends[3], best[1])
-        if contact == PIERCED:
-            break
-    return found, contact, arc
-
-
-@njit(cache=True, error_model='numpy')
-def _move(point: Array, owner: NDArray[np.int64], arc: Array, old: int, new: int) -> None:
-    """Copy one entry of a path to another place."""
-    owner[new], arc[new] = owner[old], arc[old]
-    for i in range(3):
-        point[new, i] = point[old, i]
-
-
-@njit(cache=True, error_model='numpy')
-def _wrap_path(
+def _active_points(
     table: PathTable,
     muscle: int,
-    body_rotation: Array,
     body_position: Array,
+    body_rotation: Array,
+    coordinate: Array,
     point: Array,
     owner: NDArray[np.int64],
-    arc: Array,
-    n: int,
-) -> tuple[int, float]:
-    """
-    Insert the wrap points of one muscle into its path.
-
-    `owner` holds the number of a path point from 0, or ``-1 - use`` of a wrap point.
-    Returns the number of points and the length.
-    """
-    begin, end = table.wrap_start[muscle], table.wrap_start[muscle + 1]
-    n_wraps = end - begin
-    order = np.arange(begin, end)
-    contacts = np.zeros(n_wraps, np.int64)
-    best = np.empty((2, 3))
-    rotation, origin = np.empty((3, 3)), np.empty(3)
-    length = np.inf
-    geodesic = table.geodesic[0] or n_wraps > 1
-    for attempt in range(WRAP_ROUNDS if n_wraps > 1 else 1):
-        for place in range(n_wraps):
-            use = order[place]
-            for k in range(n - 1):
-                if owner[k] == -1 - use:
-                    for later in range(k + 2, n):
-                        _move(point, owner, arc, later, later - 2)
-                    n -= 2
-                    break
-            body = table.wrap_body[use]
+) -> int:
+    """Put the points of a path that are there where they are; returns their number."""
+    begin = table.point_start[muscle]
+    moved = np.empty(3)
+    n = 0
+    for p in range(begin, table.point_start[muscle + 1]):
+        body = table.point_body[p]
+        if table.point_condition[p] >= 0:
+            c = table.point_condition[p]
+            value = coordinate[table.condition_coordinate[c]]
+            if not table.condition_range[c, 0] <= value <= table.condition_range[c, 1]:
+                continue
+        if table.point_motion[p] >= 0:
+            d = table.point_motion[p]
             for i in range(3):
-                for j in range(3):
-                    rotation[i, j] = 0.0
-                    for k in range(3):
-                        rotation[i, j] += (
-                            body_rotation[body, i, k] * table.wrap_rotation[use, k, j]
-                        )
-            _out_of(
-                body_rotation[body], body_position[body], table.wrap_translation[use], origin
+                value = coordinate[table.motion_coordinate[d, i]]
+                moved[i] = evaluate(table.functions, table.motion_function[d, i], value)[0]
+            out_of(body_rotation[body], body_position[body], moved, point[n])
+        else:
+            out_of(
+                body_rotation[body], body_position[body], table.point_location[p], point[n]
             )
-            segment, contact, along = _best_wrap(
-                table, use, rotation, origin, point, owner, n, geodesic, best
-            )
-            contacts[place] = contact
-            if segment >= 0:
-                k = segment + 1
-                for later in range(n - 1, k - 1, -1):
-                    _move(point, owner, arc, later, later + 2)
-                for end_number in range(2):
-                    for i in range(3):
-                        point[k + end_number, i] = best[end_number, i]
-                    owner[k + end_number] = -1 - use
-                arc[k] = along
-                n += 2
-        before = length
-        length = _path_length(point, owner, arc, n)
-        if abs(length - before) < WRAP_TOLERANCE:
-            break
-        # An object missed because the next one is in the way is tried after it.
-        if attempt == 0 and n_wraps > 1 and contacts[0] == MISSED and contacts[1] == INSIDE:
-            order[0], order[1] = order[1], order[0]
-    return n, length
+        owner[n] = p - begin
+        n += 1
+    return n
 
 
 @njit(cache=True, error_model='numpy')
-def muscle_paths(
-    table: PathTable, body_position: Array, body_rotation: Array, jacobian: Array
-) -> MusclePaths:
-    """
-    Compute all paths.
+def _add_motion(
+    table: PathTable,
+    motion: int,
+    rotation: Array,
+    pull: Array,
+    coordinate: Array,
+    coordinate_gain: Array,
+    moment_arm: Array,
+) -> None:
+    """Add to a muscle's moment arms (n_q,) what it pulls a point along its way in its body."""
+    for i in range(3):
+        q = table.motion_independent[motion, i]
+        if q < 0:
+            continue
+        x = table.motion_coordinate[motion, i]
+        slope = evaluate(table.functions, table.motion_function[motion, i], coordinate[x])[1]
+        along = 0.0
+        for j in range(3):
+            along += pull[j] * rotation[j, i]
+        moment_arm[q] += along * slope * coordinate_gain[x]
 
-    Parameters
-    ----------
-    table
-        Paths of the model.
-    body_position, body_rotation
-        Origins (n_b, 3) [m] and axes (n_b, 3, 3) of the bodies, ground from body.
-    jacobian
-        Spatial Jacobians (n_b, 6, n_q) about the ground's origin, (angular, linear).
-    """
+
+@njit(cache=True, error_model='numpy')
+def _body(point_body: IntArray, wrap_body: IntArray, first: int, owner: int) -> int:
+    """Give the body that carries a point of a path whose first point is number `first`."""
+    if owner < 0:
+        return int(wrap_body[-1 - owner])
+    return int(point_body[first + owner])
+
+
+@njit(cache=True, error_model='numpy')
+def _paths(
+    table: PathTable,
+    body_position: Array,
+    body_rotation: Array,
+    jacobian: Array,
+    coordinate: Array,
+    coordinate_gain: Array,
+) -> MusclePaths:
     n_m = table.point_start.size - 1
     size = table.longest[0]
     point, owner, arc = np.empty((size, 3)), np.empty(size, np.int64), np.zeros(size)
@@ -237,29 +133,36 @@ def muscle_paths(
     length = np.empty(n_m)
     moment_arm = np.zeros((n_m, jacobian.shape[2]))
     wrench = np.zeros((table.body_index.size, 6))
+    pull = np.empty(3)
+    special = table.condition_coordinate.size + table.motion_coordinate.size > 0
     for m in range(n_m):
         n = table.point_start[m + 1] - table.point_start[m]
-        for k in range(n):
-            p = table.point_start[m] + k
-            body = table.point_body[p]
-            _out_of(
-                body_rotation[body], body_position[body], table.point_location[p], point[k]
-            )
-            owner[k] = k
-        if table.wrap_start[m + 1] > table.wrap_start[m]:
-            n, length[m] = _wrap_path(
-                table, m, body_rotation, body_position, point, owner, arc, n
+        if special:
+            n = _active_points(table, m, body_position, body_rotation, coordinate, point, owner)
+        else:
+            for k in range(n):
+                p = table.point_start[m] + k
+                body = table.point_body[p]
+                out_of(
+                    body_rotation[body], body_position[body], table.point_location[p], point[k]
+                )
+                owner[k] = k
+        if table.wraps.start[m + 1] > table.wraps.start[m]:
+            n, length[m] = wrap_path(
+                table.wraps, m, body_rotation, body_position, point, owner, arc, n
             )
         else:
-            length[m] = _path_length(point, owner, arc, n)
+            length[m] = path_length(point, owner, arc, n)
 
+        first = table.point_start[m]
         for k in range(table.body_start[m], table.body_start[m + 1]):
             entry_of[table.body_index[k]] = k
         for k in range(n - 1):
-            body_1, body_2 = _body(table, m, owner[k]), _body(table, m, owner[k + 1])
+            body_1 = _body(table.point_body, table.wraps.body, first, owner[k])
+            body_2 = _body(table.point_body, table.wraps.body, first, owner[k + 1])
             if body_1 == body_2:
                 continue
-            span = _distance(point[k], point[k + 1])
+            span = distance(point[k], point[k + 1])
             if span == 0.0:
                 continue
             ux = (point[k + 1, 0] - point[k, 0]) / span
@@ -284,15 +187,72 @@ def muscle_paths(
                 for i in range(6):
                     arm += wrench[k, i] * jacobian[body, i, q]
             moment_arm[m, q] = arm
+        if table.motion_coordinate.size > 0:
+            for k in range(n):
+                p = table.point_start[m] + owner[k]
+                if owner[k] < 0 or table.point_motion[p] < 0:
+                    continue
+                for i in range(3):
+                    pull[i] = 0.0
+                for other in (k - 1, k + 1):
+                    if 0 <= other < n:
+                        span = distance(point[k], point[other])
+                        if span > 0.0:
+                            for i in range(3):
+                                pull[i] += (point[other, i] - point[k, i]) / span
+                rotation = body_rotation[table.point_body[p]]
+                motion = table.point_motion[p]
+                _add_motion(
+                    table, motion, rotation, pull, coordinate, coordinate_gain, moment_arm[m]
+                )
     return MusclePaths(length, moment_arm, wrench)
 
 
 @njit(cache=True, error_model='numpy')
-def _body(table: PathTable, muscle: int, owner: int) -> int:
-    """Give the body that carries a point of a path."""
-    if owner < 0:
-        return int(table.wrap_body[-1 - owner])
-    return int(table.point_body[table.point_start[muscle] + owner])
+def muscle_paths(
+    table: PathTable, body_position: Array, body_rotation: Array, jacobian: Array
+) -> MusclePaths:
+    """
+    Compute all paths of a model whose path points are all fixed.
+
+    Parameters
+    ----------
+    table
+        Paths of the model.
+    body_position, body_rotation
+        Origins (n_b, 3) [m] and axes (n_b, 3, 3) of the bodies, ground from body.
+    jacobian
+        Spatial Jacobians (n_b, 6, n_q) about the ground's origin, (angular, linear).
+
+    Raises
+    ------
+    ValueError
+        If a path point is conditional or moving: where it is depends on the coordinates, which
+        `posture_paths` knows.
+    """
+    if table.condition_coordinate.size > 0 or table.motion_coordinate.size > 0:
+        raise ValueError('conditional or moving path points need the coordinates: posture_paths')
+    none = np.zeros(0)
+    return _paths(table, body_position, body_rotation, jacobian, none, none)
+
+
+@njit(cache=True, error_model='numpy')
+def posture_paths(table: PathTable, state: BodyState, jacobian: Array) -> MusclePaths:
+    """
+    Compute all paths.
+
+    Parameters
+    ----------
+    table
+        Paths of the model.
+    state
+        Motion of the bodies with the coordinates that it is for (`forward_kinematics`).
+    jacobian
+        Spatial Jacobians (n_b, 6, n_q) about the ground's origin, (angular, linear).
+    """
+    return _paths(
+        table, state.position, state.rotation, jacobian, state.coordinate, state.coordinate_gain
+    )
 
 
 @njit(cache=True, error_model='numpy')

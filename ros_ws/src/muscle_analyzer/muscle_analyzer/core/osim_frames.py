@@ -34,10 +34,11 @@ class FrameResolver:
             path = f'/bodyset/{xml.name(body)}'
             self._add_body(path, xml.name(body))
             self._add_offsets(body, path)
-        for joint in xml.objects('JointSet'):
-            path = f'/jointset/{xml.name(joint)}'
-            for offset in joint.findall('frames/PhysicalOffsetFrame'):
-                self._offsets[f'{path}/{xml.name(offset)}'] = (offset, path)
+        for set_tag in ('JointSet', 'ConstraintSet'):
+            for element in xml.objects(set_tag):
+                path = f'/{set_tag.lower()}/{element.get("name")}'
+                for offset in element.findall('frames/PhysicalOffsetFrame'):
+                    self._offsets[f'{path}/{xml.name(offset)}'] = (offset, path)
 
     def _add_body(self, path: str, name: str) -> None:
         self._frames[path] = Frame(name, np.eye(3), np.zeros(3))
@@ -56,7 +57,11 @@ class FrameResolver:
         OsimFormatError
             If no such frame exists, or frames refer to each other in a circle.
         """
-        owner = f'/jointset/{element.get("name")}' if element.tag.endswith('Joint') else ''
+        owners = (('Joint', '/jointset'), ('Constraint', '/constraintset'))
+        owner = ''
+        for ending, path in owners:
+            if element.tag.endswith(ending):
+                owner = f'{path}/{element.get("name")}'
         return self._resolve(self._xml.text(element, tag), owner, element, ())
 
     def in_owner(self, owner_path: str) -> Frame:
@@ -69,7 +74,9 @@ class FrameResolver:
         return bodies | {path: offset for path, (offset, _) in self._offsets.items()}
 
     def _resolve(self, socket: str, owner: str, asked_by: Element, seen: tuple[str, ...]) -> Frame:
-        for path in (socket, f'{owner}/{socket}', f'/bodyset/{socket}', f'/{socket}'):
+        # Early files of version 4 have relative paths; the names behind the dots are enough.
+        name = socket.replace('../', '').strip('/')
+        for path in (socket, f'{owner}/{name}', f'/bodyset/{name}', f'/{name}'):
             if path in seen:
                 raise OsimFormatError(f'{self._xml.where(asked_by)}: frames in a circle: {seen}')
             if path in self._frames:
@@ -85,9 +92,8 @@ class FrameResolver:
             base = self._resolve(owner, '', offset, (*seen, path))
         else:
             base = self._resolve(socket, owner, offset, (*seen, path))
-        rotation = body_fixed_xyz(self._xml.numbers(offset, 'orientation', 3))
+        rotation = body_fixed_xyz(self._xml.vector(offset, 'orientation', np.zeros(3)))
+        translation = self._xml.vector(offset, 'translation', np.zeros(3))
         return Frame(
-            base.body,
-            base.rotation @ rotation,
-            base.translation + base.rotation @ self._xml.numbers(offset, 'translation', 3),
+            base.body, base.rotation @ rotation, base.translation + base.rotation @ translation
         )

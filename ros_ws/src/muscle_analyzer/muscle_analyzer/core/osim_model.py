@@ -120,7 +120,7 @@ class PathPoint:
         'fixed', 'conditional' (there only while `coordinate` is within `range`), or 'moving' (its
         location is three functions of `location_coordinates`).
     location : (3,) array
-        In m, in the body's axes; of a moving point at its coordinates' default values.
+        In m, in the body's axes; of a moving point where its coordinates are zero.
     """
 
     name: str
@@ -214,7 +214,8 @@ class OsimModel:
     source : str
         The file it was read from.
     left_out : tuple of str
-        Elements of the file that are deliberately not part of the model ('tag name').
+        Elements of the file that are deliberately not part of the model ('tag name'): contact,
+        actuators, controllers, what is switched off, and what the caller let go.
     """
 
     name: str

@@ -62,15 +62,15 @@ def read_muscle(xml: OsimXml, frames: FrameResolver, element: Element) -> Muscle
         pennation_angle=xml.number(element, 'pennation_angle_at_optimal'),
         points=points,
         wraps=tuple(_read_path_wrap(xml, w) for w in xml.objects('PathWrapSet', path)),
-        properties=_read_properties(element),
+        properties=_read_properties(xml, element),
         **positive,
     )
 
 
-def _read_properties(element: Element) -> dict[str, float]:
+def _read_properties(xml: OsimXml, element: Element) -> dict[str, float]:
     """Return the simple numerical and true/false children that are not fields of their own."""
     properties = {}
-    for child in element:
+    for child in xml.children(element):
         text = (child.text or '').strip()
         if child.tag in _OWN_FIELDS or len(child) or not text:
             continue
@@ -101,15 +101,15 @@ def _read_point(xml: OsimXml, frames: FrameResolver, element: Element) -> PathPo
 
 
 def _read_moving_point(xml: OsimXml, frame: Frame, element: Element, name: str) -> PathPoint:
-    if np.any(frame.translation) or not np.array_equal(frame.rotation, np.eye(3)):
-        raise UnsupportedElementError(f'{xml.where(element)}: a moving point in an offset frame')
+    if not np.array_equal(frame.rotation, np.eye(3)):
+        raise UnsupportedElementError(f'{xml.where(element)}: a moving point in a turned frame')
     functions = []
     coordinates = []
-    for axis in 'xyz':
+    for axis, offset in zip('xyz', frame.translation, strict=True):
         holder = element.find(f'{axis}_location')
         if holder is None:
             raise OsimFormatError(f'{xml.where(element)} has no <{axis}_location>')
-        functions.append(xml.function(holder))
+        functions.append(xml.function(holder).shifted(float(offset)))
         socket = xml.text(element, f'socket_{axis}_coordinate')
         coordinates.append(socket.rsplit('/', 1)[-1])
     location = np.array([function.derivatives(0.0)[0] for function in functions])
@@ -124,15 +124,18 @@ def _read_moving_point(xml: OsimXml, frame: Frame, element: Element, name: str) 
 
 
 def _read_path_wrap(xml: OsimXml, element: Element) -> PathWrap:
-    first, last = (
-        xml.numbers(element, 'range', 2) if element.find('range') is not None else (-1.0, -1.0)
-    )
-    method = xml.text(element, 'method') if element.find('method') is not None else 'hybrid'
+    first, last = xml.vector(element, 'range', (-1.0, -1.0))
+    method = xml.text(element, 'method').lower() if xml.has(element, 'method') else 'hybrid'
     return PathWrap(xml.text(element, 'wrap_object'), method, (int(first), int(last)))
 
 
-def read_wrap_objects(xml: OsimXml, frames: FrameResolver) -> tuple[WrapObject, ...]:
+def read_wrap_objects(
+    xml: OsimXml, frames: FrameResolver, left_out: list[str]
+) -> tuple[WrapObject, ...]:
     """Read the wrap objects of every body and offset frame.
+
+    Paths refer to them by name alone; of several with one name, OpenSim and this reader know the
+    first, and the others are left out.
 
     Raises
     ------
@@ -144,12 +147,13 @@ def read_wrap_objects(xml: OsimXml, frames: FrameResolver) -> tuple[WrapObject, 
     owners = {'/ground': xml.model.find('Ground')}
     owners |= {f'/bodyset/{xml.name(body)}': body for body in xml.objects('BodySet')}
     owners |= {path: element for path, element in frames.paths().items() if element is not None}
-    found = []
+    found: dict[str, WrapObject] = {}
     for path, owner in owners.items():
-        if owner is not None:
-            for element in xml.objects('WrapObjectSet', owner):
-                found.append(_read_wrap_object(xml, frames.in_owner(path), element))
-    return tuple(found)
+        for element in xml.objects('WrapObjectSet', owner) if owner is not None else ():
+            surface = _read_wrap_object(xml, frames.in_owner(path), element)
+            if found.setdefault(surface.name, surface) is not surface:
+                left_out.append(f'{element.tag} {surface.name} of {path}')
+    return tuple(found.values())
 
 
 def _read_wrap_object(xml: OsimXml, owner: Frame, element: Element) -> WrapObject:
@@ -159,16 +163,20 @@ def _read_wrap_object(xml: OsimXml, owner: Frame, element: Element) -> WrapObjec
     dimensions = np.concatenate([xml.numbers(element, tag, count) for tag, count in fields])
     if np.any(dimensions <= 0.0):
         raise OsimFormatError(f'{xml.where(element)}: dimensions {dimensions} are not positive')
-    rotation = body_fixed_xyz(xml.numbers(element, 'xyz_body_rotation', 3))
+    rotation = body_fixed_xyz(xml.vector(element, 'xyz_body_rotation', np.zeros(3)))
+    translation = xml.vector(element, 'translation', np.zeros(3))
+    if kind == 'torus' and dimensions[1] <= dimensions[0]:
+        raise OsimFormatError(f'{xml.where(element)}: inner and outer radius {dimensions}')
+    quadrant = xml.text(element, 'quadrant') if xml.has(element, 'quadrant') else 'all'
     return WrapObject(
         name=xml.name(element),
         kind=kind,
         frame=Frame(
             owner.body,
             owner.rotation @ rotation,
-            owner.translation + owner.rotation @ xml.numbers(element, 'translation', 3),
+            owner.translation + owner.rotation @ translation,
         ),
         active=xml.flag(element, 'active', True),
-        quadrant=xml.text(element, 'quadrant') if element.find('quadrant') is not None else 'all',
+        quadrant=quadrant.lower().removeprefix('+'),
         dimensions=tuple(float(value) for value in dimensions),
     )

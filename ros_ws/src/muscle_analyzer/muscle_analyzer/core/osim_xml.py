@@ -7,48 +7,61 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from pathlib import Path
-from xml.etree.ElementTree import Element, ParseError, parse
+from xml.etree.ElementTree import Element, ParseError, fromstring
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from muscle_analyzer.core import functions
 from muscle_analyzer.core.exceptions import OsimFormatError, UnsupportedElementError
 from muscle_analyzer.core.functions import PiecewisePolynomial
+from muscle_analyzer.core.osim_upgrade import upgrade_model
 
 Array = NDArray[np.float64]
 
-OLDEST_VERSION = 40000
+#: Versions that files of OpenSim 4 (from this one on) and of OpenSim 3.0 to 3.3 carry.
+OLDEST_VERSION, OPENSIM_3 = 40000, 30000
 
 
 class OsimXml:
     """The parsed file, and the readers of single values in it.
 
+    A value that an element does not give is taken from the file's <defaults> for elements of its
+    type, as OpenSim does.
+
     Parameters
     ----------
     path : Path
-        An OpenSim 4.x model file.
+        A model file of OpenSim 4.x or 3.0 to 3.3.
+    content : bytes, optional
+        What the file holds, if it has been read already.
 
     Raises
     ------
     OsimFormatError
-        If the file cannot be read, is not XML, is not a model, or is older than format 4.
+        If the file cannot be read, is not XML, is not a model, or is of another version.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, content: bytes | None = None) -> None:
         self.path = path
         try:
-            root = parse(path).getroot()
+            root = fromstring(path.read_bytes() if content is None else content)
         except (OSError, ParseError) as error:
             raise OsimFormatError(f'{path}: cannot be read as XML: {error}') from error
-        if root.tag != 'OpenSimDocument' or root.find('Model') is None:
+        model = root.find('Model')
+        if root.tag != 'OpenSimDocument' or model is None:
             raise OsimFormatError(f'{path}: <{root.tag}> is no OpenSim model document')
         version = root.get('Version', '')
-        if not version.isdigit() or int(version) < OLDEST_VERSION:
-            raise OsimFormatError(f'{path}: Version={version!r}, a file of OpenSim 4 is needed')
-        model = root.find('Model')
-        assert model is not None
+        number = int(version) if version.isdigit() else 0
+        if number < OLDEST_VERSION and number != OPENSIM_3:
+            raise OsimFormatError(
+                f'{path}: Version={version!r}, a file of OpenSim 4 or of OpenSim 3.0 to 3.3 '
+                f'(Version="{OPENSIM_3}") is needed'
+            )
         self.model = model
+        self._defaults = {element.tag: element for element in model.findall('defaults/*')}
+        if number == OPENSIM_3:
+            upgrade_model(model, self.where)
 
     def where(self, element: Element) -> str:
         """Return 'file: <tag name="...">' for messages."""
@@ -68,9 +81,25 @@ class OsimXml:
         found = (self.model if parent is None else parent).find(f'{set_tag}/objects')
         yield from () if found is None else found
 
+    def child(self, element: Element, tag: str) -> Element | None:
+        """Return a child element, or that of the file's default for the element's type."""
+        found = element.find(tag)
+        if found is None and element.tag in self._defaults:
+            found = self._defaults[element.tag].find(tag)
+        return found
+
+    def children(self, element: Element) -> list[Element]:
+        """Return all children, those of the file's default first."""
+        return [*self._defaults.get(element.tag, ()), *element]
+
+    def has(self, element: Element, tag: str) -> bool:
+        """Tell whether a child element is there and is not empty."""
+        found = self.child(element, tag)
+        return found is not None and bool((found.text or '').strip())
+
     def text(self, element: Element, tag: str) -> str:
         """Return the stripped text of a child element, which must be there."""
-        child = element.find(tag)
+        child = self.child(element, tag)
         if child is None or child.text is None or not child.text.strip():
             raise OsimFormatError(f'{self.where(element)} has no <{tag}>')
         return child.text.strip()
@@ -86,13 +115,18 @@ class OsimXml:
             raise OsimFormatError(f'{self.where(element)} <{tag}>: {text!r}, want {count} numbers')
         return values
 
+    def vector(self, element: Element, tag: str, otherwise: ArrayLike) -> Array:
+        """Return a child's numbers, or others if there is no such child."""
+        values = np.asarray(otherwise, dtype=np.float64)
+        return self.numbers(element, tag, values.size) if self.has(element, tag) else values
+
     def number(self, element: Element, tag: str) -> float:
         """Return a child's single number."""
         return float(self.numbers(element, tag, 1)[0])
 
     def flag(self, element: Element, tag: str, default: bool) -> bool:
         """Return a child's true or false, or the default if there is no such child."""
-        if element.find(tag) is None:
+        if not self.has(element, tag):
             return default
         text = self.text(element, tag).lower()
         if text not in ('true', 'false'):
@@ -112,11 +146,8 @@ class OsimXml:
         known = [child for child in candidates if child.tag in _FUNCTIONS]
         if len(known) == 1:
             return self._function(known[0])
-        strange = [
-            child.tag
-            for child in candidates
-            if child.get('name') == 'function' or child.tag.endswith(('Function', 'Spline'))
-        ]
+        # Objects have capital letters, properties beside them have not.
+        strange = [child.tag for child in candidates if child.tag[:1].isupper()]
         if strange:
             raise UnsupportedElementError(f'{self.where(holder)}: function <{strange[0]}>')
         raise OsimFormatError(f'{self.where(holder)} has no function')
@@ -140,6 +171,11 @@ class OsimXml:
                     return functions.simm_spline(
                         self.numbers(element, 'x'), self.numbers(element, 'y')
                     )
+                case 'step':
+                    return functions.smooth_step(
+                        *(self.number(element, f'{end}_time') for end in ('start', 'end')),
+                        *(self.number(element, f'{end}_value') for end in ('start', 'end')),
+                    )
                 case _:
                     return self.function(element).scaled(self.number(element, 'scale'))
         except OsimFormatError as error:
@@ -156,6 +192,7 @@ _FUNCTIONS = {
     'SimmSpline': 'spline',
     'NaturalCubicSpline': 'spline',
     'natCubicSpline': 'spline',
+    'StepFunction': 'step',
     'MultiplierFunction': 'multiplier',
 }
 
