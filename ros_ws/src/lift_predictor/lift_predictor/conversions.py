@@ -57,9 +57,12 @@ def box_from_msg(task: TaskMsg, mass: float) -> Box:
 
 
 def prediction_to_msg(
-    prediction: PredictedLift2D, lift: Lift, subject: Subject
+    prediction: PredictedLift2D, lift: Lift | None, subject: Subject
 ) -> PredictedLiftMsg:
-    """Return the message of a prediction; without a solution its arrays are empty."""
+    """Return the message of a prediction; without a solution its arrays are empty.
+
+    `lift` is the recorded one that gives the stamp; None: planned, the stamps begin at 0.
+    """
     message = PredictedLiftMsg(
         lift_id=prediction.lift_id,
         subject=subject.pseudonym,
@@ -76,7 +79,7 @@ def prediction_to_msg(
         support_front=float(prediction.support[1]),
         report=report_to_msg(prediction.report),
     )
-    message.header.stamp = to_stamp(lift.start)
+    message.header.stamp = to_stamp(0.0 if lift is None else lift.start)
     message.header.frame_id = LABORATORY
     if prediction.verification is not None:
         message.verified_names = list(prediction.verification.violation)

@@ -11,7 +11,7 @@ from typing import Final
 from lifting_interfaces.action import PredictLift
 from lifting_interfaces.msg import LiftComparison, MeasuredLift, PredictedLift, Task
 from lifting_interfaces.msg import Subject as SubjectMsg
-from rclpy.action import ActionServer, GoalResponse
+from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 from trajectory_msgs.msg import JointTrajectory
@@ -20,8 +20,11 @@ from human_model.errors import HumanModelError
 from human_model.motion import Lift
 from human_model.subject import Subject
 from lift_predictor import conversions
-from lift_predictor.core.exceptions import LiftPredictorError
+from lift_predictor.background import Background
+from lift_predictor.core.exceptions import CancelledError, LiftPredictorError
 from lift_predictor.core.predictor import LiftPredictor, PredictorOptions
+from lift_predictor.core.sagittal.prediction import PredictedLift2D
+from lift_predictor.plan_action import PlanAction
 from lifting_node import qos
 from lifting_node.pipeline_node import PipelineNode
 from lifting_node.run import run_node
@@ -39,7 +42,8 @@ class LiftPredictorNode(PipelineNode):
 
     def build(self) -> None:
         """Load (once per machine: compile) the programme; create publishers and subscriptions."""
-        self.predictor = LiftPredictor(PredictorOptions(**self.values))
+        options = PredictorOptions(**self.values)
+        self.predictor = LiftPredictor(options)
         programme = self.predictor.programme
         self.get_logger().info(f'{programme.how} ({programme.build_time:.2f} s)')
         self._subject: Subject | None = None
@@ -54,12 +58,21 @@ class LiftPredictorNode(PipelineNode):
         self.subscribe(SubjectMsg, 'subject', self._on_subject, qos.LATCHED)
         self.subscribe(Task, 'task', self._on_task, qos.LATCHED)
         self.subscribe(MeasuredLift, 'measured_lift', self._on_measured_lift, qos.RESULTS)
+        self._background = Background(self, options)
+        self._plan = PlanAction(self, self._background, lambda: self.active)
         self._action = ActionServer(
-            self, PredictLift, '~/predict_lift', self._on_goal, goal_callback=self._accept
+            self,
+            PredictLift,
+            '~/predict_lift',
+            self._on_goal,
+            goal_callback=self._accept,
+            cancel_callback=lambda handle: CancelResponse.ACCEPT,
         )
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Drop the action with the rest."""
+        """Drop the actions with the rest; what they are working on ends."""
+        self._background.close()
+        self._plan.destroy()
         self._action.destroy()
         return super().on_cleanup(state)
 
@@ -67,12 +80,13 @@ class LiftPredictorNode(PipelineNode):
         known = self._subject is not None and self._task is not None
         return GoalResponse.ACCEPT if self.active and known else GoalResponse.REJECT
 
-    def _on_goal(self, handle: ServerGoalHandle) -> PredictLift.Result:
+    async def _on_goal(self, handle: ServerGoalHandle) -> PredictLift.Result:
         """Predict a lift that was seen before, with its own load or another."""
+        subject = self._subject
         goal: PredictLift.Goal = handle.request
         result = PredictLift.Result()
         lift = self._seen.get(goal.lift_id)
-        if lift is None or self._subject is None or self._task is None:
+        if lift is None or subject is None or self._task is None:
             handle.abort()
             result.error_code = PredictLift.Result.UNKNOWN_LIFT
             result.error_message = f'lift_id: no lift {goal.lift_id!r} was seen'
@@ -82,6 +96,13 @@ class LiftPredictorNode(PipelineNode):
             feedback = PredictLift.Feedback(starts_tried=tried, starts_total=total)
             feedback.best_objective = best
             handle.publish_feedback(feedback)
+            self._background.check(handle)
+
+        def work() -> PredictedLift2D:
+            self._background.check(handle)
+            predictor = self._background.predictor
+            predictor.configure(subject)
+            return predictor.predict_and_compare(lift, box, tell)[0]
 
         mass = lift.box_mass if math.isnan(goal.box_mass) else goal.box_mass
         try:
@@ -91,8 +112,14 @@ class LiftPredictorNode(PipelineNode):
             result.error_code = PredictLift.Result.NOT_SOLVED
             result.error_message = str(error)
             return result
-        prediction, _ = self.predictor.predict_and_compare(lift, box, tell)
-        result.lift = conversions.prediction_to_msg(prediction, lift, self._subject)
+        try:
+            prediction = await self._background.run(work)
+        except CancelledError as error:
+            (handle.canceled if handle.is_cancel_requested else handle.abort)()
+            result.error_code = PredictLift.Result.CANCELLED
+            result.error_message = str(error)
+            return result
+        result.lift = conversions.prediction_to_msg(prediction, lift, subject)
         if prediction.report.ok:
             handle.succeed()
         else:

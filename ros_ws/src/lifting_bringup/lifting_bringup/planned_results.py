@@ -122,7 +122,7 @@ def _write_results(planned: PlannedLift, entry: TaskFile, path: Path) -> SpinePe
     analyzer.configure(subject)
     analysis = analyzer.analyze(motion, prediction.lift_id, 'predicted')
     torques = analyzer.joint_torques(analysis, motion)
-    lift = predictor_messages.prediction_to_msg(prediction, prediction.lift, subject)
+    lift = predictor_messages.prediction_to_msg(prediction, None, subject)
     lift.maximum_weight = entry.task.box_mass is None
     with ResultsWriter(path, STATION) as writer:
         for topic, message in (
