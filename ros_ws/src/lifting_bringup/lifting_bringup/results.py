@@ -146,6 +146,7 @@ def _lift(
         torques=_torques(entry),
         activations=_blocks(entry, 'muscle_analysis', curves.activations),
         spine=_blocks(entry, 'spine_load', curves.spine_curves),
+        joints=_blocks(entry, 'joint_reactions', curves.joint_loads),
         points=_pair(motions, lambda lift: curves.body_points(lift, box_size)),
         risk=_risk(entry),
         lifting=_lifting(entry, results),

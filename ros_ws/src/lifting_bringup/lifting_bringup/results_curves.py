@@ -20,6 +20,7 @@ from lifting_bringup.report.data import (
     Comparison,
     GroundForces,
     JointAngles,
+    JointLoads,
     Missing,
     SpineCurves,
     Torques,
@@ -117,6 +118,22 @@ def spine_curves(message: Any, start: float) -> SpineCurves:
         np.asarray(message.compression_per_degree, np.float64),
         np.asarray(message.anterior_shear_per_degree, np.float64),
         message.disc_frame,
+    )
+
+
+def joint_loads(message: Any, start: float) -> JointLoads:
+    """Return the loads of all joints of a block; only peaks are shown, so `start` is not used."""
+    del start
+    names = tuple(message.joint_names)
+    force = np.asarray(message.force, np.float64).reshape(-1, len(names), 3)
+    everywhere = np.asarray(message.status) == 0
+    lumbar = np.asarray(message.lumbar_status) == 0
+    limbs = [name.startswith(('hip', 'knee')) for name in names]
+    return JointLoads(
+        names,
+        force[:, :, 2],
+        np.hypot(force[:, :, 0], force[:, :, 1]),
+        np.where(limbs, everywhere[:, None], lumbar[:, None]),
     )
 
 

@@ -20,6 +20,7 @@ from lifting_bringup.report.data import (
     GroundForces,
     Header,
     JointAngles,
+    JointLoads,
     Lifting,
     LiftReport,
     Missing,
@@ -69,6 +70,14 @@ def spine(n, compression, shear):
     return SpineCurves(time, force, 0.3 * shear + shape(n, 0.7 * shear), solved,
                        np.full(n, 0.004 * shear), np.full(n, compression * 0.0174),
                        'sacral end plate')
+
+
+def joints(n, gain):
+    names = ('l5_s1', 'l4_l5', 'hip_r', 'knee_r')
+    compression = gain * np.outer(np.linspace(1.0, 0.4, n), [3000.0, 2800.0, 2500.0, 2000.0])
+    solved = np.ones((n, len(names)), bool)
+    solved[:, 2] = False
+    return JointLoads(names, compression, 0.2 * compression, solved)
 
 
 def body(n, lean):
@@ -133,6 +142,7 @@ def lift(lift_id='lift_001', start=3.2):
         Pair(Activations(time, MUSCLES, activation, good),
              Activations(time, MUSCLES, 0.7 * activation, np.ones(n, bool))),
         Pair(spine(n, 3800.0, 846.0), spine(61, 2500.0, 612.0)),
+        Pair(joints(n, 1.0), joints(61, 0.7)),
         Pair(body(n, 1.25), body(61, 0.9)),
         Risk(criteria(), 1230.0, 234.0, 'action',
              'Peak L5-S1 compression 3620 N (57.0 N/kg), between the action limit and the maximum '
@@ -227,7 +237,7 @@ def test_page_needs_nothing_else_and_is_well_formed(page):
 
 def test_every_figure_is_valid_svg_in_page_colours(page):
     figures = re.findall(r'<svg.*?</svg>', page, flags=re.DOTALL)
-    assert len(figures) == 2 * 7
+    assert len(figures) == 2 * 8
     for figure in figures:
         ElementTree.fromstring(figure)
         assert 'var(--measured)' in figure or 'var(--series-1)' in figure
@@ -346,6 +356,17 @@ def test_wrong_shapes_are_refused_by_field():
         Torques(np.zeros(3), ('hip',), np.zeros((3, 1)), np.zeros(3), np.zeros((3, 1)))
     with pytest.raises(ReportError, match=r'SpineCurves\.solved'):
         replace(spine(10, 1.0, 1.0), solved=np.ones(3, bool))
+    with pytest.raises(ReportError, match=r'JointLoads\.solved'):
+        replace(joints(10, 1.0), solved=np.ones(10, bool))
+
+
+def test_peaks_of_joints_leave_out_what_did_not_solve(page):
+    loads = joints(20, 1.0)
+    assert loads.peak_compression[:2].tolist() == [3000.0, 2800.0]
+    assert np.isnan(loads.peak_compression[2])
+    assert loads.peak_shear[3] == pytest.approx(400.0)
+    assert 'L4-L5' in page
+    assert 'none solved' in page
 
 
 def test_report_is_written_where_it_was_asked_for(tmp_path):

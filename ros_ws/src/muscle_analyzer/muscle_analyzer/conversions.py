@@ -116,6 +116,7 @@ def joint_reactions_to_msg(analysis: MuscleAnalysis) -> JointReactionsMsg:
         report=report_to_msg(analysis.report),
     )
     _put_block(message, analysis, analysis.status)
+    message.lumbar_status = _statuses(analysis.spine_status)
     return message
 
 
@@ -156,4 +157,8 @@ def _put_block(
     message.lift_id = block.lift_id
     message.source = _SOURCES[block.source]
     message.time_from_start = flat(block.time - block.time[0])
-    message.status = array('H', np.asarray(status, np.uint16).tobytes())
+    message.status = _statuses(status)
+
+
+def _statuses(status: npt.NDArray[np.int64]) -> array[int]:
+    return array('H', np.asarray(status, np.uint16).tobytes())

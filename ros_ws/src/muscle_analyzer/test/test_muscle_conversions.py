@@ -122,6 +122,7 @@ def test_joint_reactions(analysis):
     np.testing.assert_array_equal(message.moment, analysis.joint_moment.ravel())
     assert (message.subject, message.body_mass) == ('p01', 63.5)
     assert list(message.status) == [int(WEAK.status)] * N
+    assert list(message.lumbar_status) == [0, int(WEAK.status)]
 
 
 def test_joint_torques(analysis):

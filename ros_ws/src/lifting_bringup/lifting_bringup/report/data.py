@@ -272,6 +272,46 @@ class BodyPoints:
 
 
 @dataclass(frozen=True)
+class JointLoads:
+    """Loads of n_j joints over a lift.
+
+    Attributes
+    ----------
+    joints : tuple of str, n_j
+        As in ``JointReactions.joint_names``.
+    compression, shear : array, shape (n, n_j)
+        Along the joint's axis towards the head, and across it in any direction [N].
+    solved : array of bool, shape (n, n_j)
+        Samples whose solve report is good for the joint.
+    """
+
+    joints: tuple[str, ...]
+    compression: Array
+    shear: Array
+    solved: BoolArray
+
+    def __post_init__(self) -> None:
+        """Check the shapes."""
+        shape = (len(self.compression), len(self.joints))
+        for name in ('compression', 'shear', 'solved'):
+            check(self, name, shape)
+
+    @property
+    def peak_compression(self) -> Array:
+        """Largest compression of each joint in the good samples (n_j,) [N]; NaN without any."""
+        return self._peak(self.compression)
+
+    @property
+    def peak_shear(self) -> Array:
+        """Largest shear of each joint in the good samples (n_j,) [N]; NaN without any."""
+        return self._peak(self.shear)
+
+    def _peak(self, values: Array) -> Array:
+        peak = np.where(self.solved, values, -np.inf).max(axis=0, initial=-np.inf)
+        return np.where(np.isneginf(peak), np.nan, peak)
+
+
+@dataclass(frozen=True)
 class LiftReport:
     """Everything about one lift.
 
@@ -293,6 +333,7 @@ class LiftReport:
     torques: Pair[Torques]
     activations: Pair[Activations]
     spine: Pair[SpineCurves]
+    joints: Pair[JointLoads]
     points: Pair[BodyPoints]
     risk: Risk | Missing
     lifting: Lifting | Missing

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import Any
 
 from injury_monitor.core.lifting_equation import lifting_index_band
-from lifting_bringup.report import curves, loads, stick_figures
+from lifting_bringup.report import curves, joint_peaks, loads, stick_figures
 from lifting_bringup.report.data import CriterionRow, Header, LiftReport, Missing, Pair, Risk
 from lifting_bringup.report.html_parts import (
     Card,
@@ -140,6 +140,11 @@ def lift_figures(lift: LiftReport, header: Header, name: str) -> str:
         _drawn('L5-S1 compression and shear', lift.spine,
                lambda: loads.spine_load(lift.spine, compression, shear, f'{name}-spine'),
                'Force of S1 on L5 in the frame of the disc. ' + _disc_frame(lift)),
+        _drawn('Lumbar levels, hips and knees', lift.joints,
+               lambda: joint_peaks.joint_peaks(lift.joints, f'{name}-joints'),
+               'Largest force of the lower segment on the upper one, muscles included: along the '
+               'axis of the disc, femur or tibia, and across it. Samples in which muscles '
+               'are too weak are left out.'),
         _drawn('Joint angles', lift.angles,
                lambda: curves.joint_angles(lift.angles, f'{name}-angles'),
                'Mean of right and left; the band spans both sides. ' + _agreement(lift)),
