@@ -16,7 +16,7 @@ PYTEST_ARGS ?=
 BENCH_ARGS ?=
 DEMO_ARGS ?=
 
-.PHONY: help setup setup-dev demo test test-long lint typecheck bench colcon interfaces lock clean
+.PHONY: help setup setup-dev demo test test-long lint typecheck bench opensim colcon interfaces lock clean
 .DEFAULT_GOAL := help
 
 help: ## show this help
@@ -47,6 +47,9 @@ bench: setup-dev ## speed and accuracy figures
 	@test -f benchmarks/run.py || { echo 'there is no benchmarks/run.py' >&2; exit 1; }
 	@$(CLEAN) $(PYTHON_BIN) benchmarks/run.py $(BENCH_ARGS)
 
+opensim: ## OpenSim 4.6 into .venv-opensim, for lift compare-opensim and the tests with it
+	@python=$(BOOTSTRAP) && "$$python" -E -s -S scripts/setup_opensim.py
+
 colcon: setup-dev ## build ros_ws with colcon against the wheels, into build/colcon
 	@$(PYTHON_BIN) -E -s -S scripts/colcon_build.py
 
@@ -56,5 +59,5 @@ lock: ## resolve requirements/*.in to requirements/*.txt (with the environment's
 	@$(CLEAN) $(PYTHON_BIN) scripts/lock_requirements.py
 
 clean: ## remove the environment and everything built
-	rm -rf $(VENV) build install log out .cache .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf $(VENV) .venv-opensim build install log out .cache .mypy_cache .ruff_cache .pytest_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -8,10 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from human_model.skeleton_3d import Skeleton3D
+from human_model.subject import Subject
+from muscle_analyzer.core.analyzer import MuscleAnalyzer
 from muscle_analyzer.core.exceptions import ModelFileError
 from muscle_analyzer.core.inverse_dynamics import add_force
 from muscle_analyzer.core.motion_derivatives import differentiate, smooth
 from muscle_analyzer.core.multibody import MultibodyModel, compile_model
+from muscle_analyzer.core.opensim.motion_on_model import motion_on_model
 from muscle_analyzer.core.osim_reader import read_osim
 from muscle_analyzer.core.subject_model import lifting_model_path
 
@@ -183,3 +187,54 @@ def squats():
         for i in range(time.size):
             add_force(external[i], model.body_index(body), force[i], point[i], moment[i])
     return Squats(model, time, q, *differentiate(time, q), external)
+
+
+@dataclass(frozen=True)
+class BoxLift:
+    """A short part of a lift: its analyzer, the body motion, and that on the model."""
+
+    analyzer: MuscleAnalyzer
+    body: object
+    motion: object
+
+
+@pytest.fixture(scope='session')
+def box_lift():
+    """Give 0.3 s of rising with a box; the left foot leaves the ground at the end."""
+    subject = Subject('p01', 'male', 63.5, 1.69, 25)
+    analyzer = MuscleAnalyzer()
+    try:
+        analyzer.configure(subject)
+    except ModelFileError as error:
+        pytest.skip(str(error))
+    skeleton = Skeleton3D.of(subject)
+    bend = {
+        'hip_flexion_r': 0.9, 'hip_flexion_l': 0.85, 'knee_angle_r': 0.8, 'knee_angle_l': 0.75,
+        'ankle_angle_r': 0.2, 'ankle_angle_l': 0.2, 'lumbar_extension': -0.4, 'arm_flex_r': 0.6,
+        'arm_flex_l': 0.55, 'lumbar_bending': 0.05, 'pelvis_tilt': -0.2,
+    }  # fmt: skip
+    standing = skeleton.standing()
+    by = skeleton.vector(bend, standing) - standing
+    time = 0.01 * np.arange(31)
+    phase = 2.0 * time[:, None]
+    q = standing + by * np.cos(phase)
+    force = np.zeros((time.size, 2, 3))
+    force[:, :, 2] = [420.0, 400.0]
+    force[:, :, 0] = [8.0, -5.0]
+    points = skeleton.body_motion(time, q, 0.0 * q, 0.0 * q)
+    cop = np.stack([points.point('mtp_r'), points.point('mtp_l')], axis=1)
+    cop[:, :, 2] = 0.0
+    force[-3:, 1] = 0.0
+    cop[-3:, 1] = np.nan
+    hand = np.zeros((time.size, 2, 3))
+    hand[:, :, 2] = [-62.0, -58.0]
+    hand[:, :, 1] = [3.0, -3.0]
+    moment = np.zeros((time.size, 2, 3))
+    moment[:, 0, 2] = 1.5
+    body = skeleton.body_motion(
+        # Stamps as of a recording: seconds since 1970.
+        1.7e9 + time, q, -2.0 * by * np.sin(phase), -4.0 * by * np.cos(phase),
+        ground_force=force, cop=cop, hand_force=hand, free_moment=moment,
+    )  # fmt: skip
+    motion = motion_on_model(analyzer.new_transfer(body.skeleton), body, 1.7e9)
+    return BoxLift(analyzer, body, motion)

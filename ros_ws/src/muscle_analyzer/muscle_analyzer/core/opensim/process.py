@@ -38,7 +38,7 @@ _OWN_VARIABLES = ('LD_LIBRARY_PATH', 'PYTHONPATH', 'PYTHONHOME')
 #: Limits of time [s]: for the import; for the start and for each instant of a run (a machine
 #: in use needs ten times the 4 s of an idle one).
 _IMPORT_TIME, _START_TIME, _INSTANT_TIME = 120.0, 120.0, 180.0
-_LOG_LINES = 12
+_LOG_LINES = 24
 
 
 @dataclass(frozen=True)
