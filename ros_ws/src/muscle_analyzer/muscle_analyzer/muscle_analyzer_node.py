@@ -34,8 +34,8 @@ from muscle_analyzer.core.analyzer import MuscleAnalyzer, MuscleAnalyzerOptions
 from muscle_analyzer.core.exceptions import MuscleAnalyzerError
 from muscle_analyzer.core.muscle_analysis import MuscleAnalysis as Analysis
 from muscle_analyzer.core.scaling import StrengthScaling
-from muscle_analyzer.core.static_optimization import StaticOptimizationOptions
 from muscle_analyzer.core.segment_masses import MassDistribution
+from muscle_analyzer.core.static_optimization import StaticOptimizationOptions
 
 WAITING_LIFTS: Final = 100
 """Lifts kept until their person is known and the node is active."""
