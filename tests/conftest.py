@@ -69,7 +69,7 @@ def track(bag: Path) -> Tracked:
         latched = {n.strip('/'): m for n, _, m in reader.messages(['/subject', '/task'])}
         subject, task = latched['subject'], latched['task']
         tracker = tracker_from(
-            defaults('motion_tracker') | {'wait': summary.stream_wait},
+            defaults('motion_tracker'),
             subject_from_msg(subject),
             subject.marker_set,
             *conversions.task_from_msg(task),

@@ -237,14 +237,42 @@ def test_unsorted_and_doubled_stamps_change_nothing(bags, tmp_path, offline):
 
 
 def test_mass_that_the_plates_do_not_confirm(broken):
+    """Entered 8 % too high: from the first quiet standing on no load is good, no alarm rises."""
+
     def change(topic, _, message):
         if topic == 'subject':
             message.mass *= 1.08
         return message
 
-    found = broken(change, (0.0, 2.5))
-    assert 'subject.mass: 68.6 kg' in found.said
-    assert '63.5 kg' in found.said
+    found = broken(change, None)
+    said = 'force plates: 63.5 kg in quiet standing, subject.mass: 68.6 kg, deviation -7.4 %'
+    assert said in ' '.join(found.said.split())
+    sources, status, compression = loads(found.path)
+    live = sources == 1
+    known = np.flatnonzero(status[live])[10]
+    assert known < 100
+    assert np.all(status[live][known:] != 0)
+    assert np.all(np.isnan(compression[live][known:]))
+    lift = found.results.lifts['lift_001']
+    measured = lift.single['measured_lift']
+    assert np.all(np.asarray(measured.motion.status) == SolveStatus.TRACKER_MASS_MISMATCH)
+    assert 'subject.mass: 68.6 kg' in measured.report.message
+    assert np.all(np.isnan(lift.blocks['spine_load', MEASURED].compression))
+    assert lift.single['predicted_lift'].report.status == SolveStatus.PREDICTOR_BAD_INPUT
+    assert found.results.alarms == []
+
+
+def test_recording_that_begins_in_motion(broken, bags, offline):
+    """The live filters take the first frame for rest: their first half second is no load."""
+    found = broken(lambda _topic, _time, message: message, (2.6, 4.5))
+    whole = live_load(offline(bags / BAG))
+    begun = live_load(found.path)
+    status = [status for status, _ in begun.values()]
+    assert all(status[:48])
+    assert not any(status[48:])
+    for stamp, (code, compression) in begun.items():
+        if code == 0:
+            assert compression == pytest.approx(whole[stamp][1], rel=0.02, abs=20.0)
 
 
 def test_recording_without_a_lift(broken):

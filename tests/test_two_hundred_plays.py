@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A recording played again and again at ten times its speed: no message lost, no node dead."""
 
+import os
 import time
+from contextlib import ExitStack
 
 import pytest
 import rclpy
@@ -13,7 +15,7 @@ from std_srvs.srv import Trigger
 
 from lifting_bringup.bags.reader import BagReader
 from lifting_bringup.graph import Graph
-from lifting_bringup.node_process import start_module
+from lifting_bringup.node_process import discovery, node_processes, start_module
 from lifting_bringup.session import summarise
 from lifting_node import qos
 
@@ -57,18 +59,18 @@ def soak(bag, rounds, loops, folder, say=print):
     summary = summarise(bag)
     with BagReader(bag) as reader:
         frames = reader.topics['/markers'].count
+    os.environ.update(discovery())
     rclpy.init()
     node = Node('listener', namespace=STATION)
     executor = EventsExecutor()
     executor.add_node(node)
     heard = Listener(node)
-    # As `lift run` does: a stream that the recording has will come, however fast it is played.
-    parameters = {'motion_tracker': {'wait': summary.stream_wait}}
-    graph = Graph(node, executor, STATION, folder / 'logs', parameters)
     player = None
+    stack = ExitStack()
     began = time.monotonic()
     try:
-        graph.start()
+        processes = stack.enter_context(node_processes(folder / 'logs', STATION))
+        graph = Graph(node, executor, STATION, processes)
         graph.bring_up()
         flush = node.create_client(Trigger, 'motion_tracker/flush')
         for play in range(loops, rounds * loops + 1, loops):
@@ -101,7 +103,7 @@ def soak(bag, rounds, loops, folder, say=print):
     finally:
         if player is not None:
             player.stop()
-        graph.stop()
+        stack.close()
         executor.shutdown()
         node.destroy_node()
         rclpy.try_shutdown()

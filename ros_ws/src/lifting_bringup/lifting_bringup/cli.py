@@ -15,7 +15,7 @@ from pathlib import Path
 from lifting_bringup import opensim_command
 from lifting_bringup.bags.exceptions import BagError
 from lifting_bringup.graph_errors import GraphError
-from lifting_bringup.node_process import discovery
+from lifting_bringup.node_process import discovery, node_processes
 
 #: The recording that `lift demo` plays.
 DEMO_BAG = 'symmetric_12kg'
@@ -111,8 +111,7 @@ def _demo(options: argparse.Namespace) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
-    from lifting_bringup.session import RunOptions, run_online, summarise
-
+    began = time.monotonic()
     output = options.output or Path('out') / options.bag.stem
     if options.offline:
         from lifting_bringup.offline import run_offline
@@ -120,15 +119,21 @@ def _run(options: argparse.Namespace) -> int:
         results = run_offline(options.bag, output, options.station)
         run = 'offline'
     else:
-        outcome = run_online(
-            RunOptions(options.bag, output, rate=options.rate, station=options.station)
-        )
+        with node_processes(output / 'logs', options.station) as processes:
+            # Loads while the nodes do.
+            from lifting_bringup.session import RunOptions, run_online
+
+            outcome = run_online(
+                RunOptions(options.bag, output, rate=options.rate, station=options.station),
+                processes=processes,
+            )
         results = outcome.results
         run = f'online at {options.rate:g} times real time'
-        print(f'ready to play after {outcome.time_to_play:.1f} s')
+        print(f'ready to play after {outcome.ready - began:.1f} s')
     began = time.monotonic()
     # Loads for long: the graph need not wait for it.
     from lifting_bringup.results import RunFacts, write_report
+    from lifting_bringup.session import summarise
 
     facts = RunFacts(run, options.bag.name, summarise(options.bag).start)
     page = write_report(results, output / 'report.html', facts)

@@ -6,9 +6,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from pathlib import Path
-from types import TracebackType
-from typing import Any, Self
+from typing import Any
 
 from lifecycle_msgs.msg import Transition
 from lifecycle_msgs.srv import ChangeState
@@ -17,7 +15,7 @@ from rclpy.executors import Executor
 from rclpy.node import Node
 
 from lifting_bringup.graph_errors import TransitionError
-from lifting_bringup.node_process import NODES, NodeProcess, start_module
+from lifting_bringup.node_process import NodeProcess
 
 #: Time [s] a node has for one lifecycle transition; the first start compiles the models.
 TRANSITION_TIMEOUT = 300.0
@@ -27,7 +25,7 @@ PATIENCE = 10.0
 
 
 class Graph:
-    """Start, configure, activate and stop the four nodes of a station.
+    """Configure, activate, check and stop the nodes of a station.
 
     Parameters
     ----------
@@ -37,10 +35,8 @@ class Graph:
         Executor that spins `node`.
     station : str
         Namespace of the station.
-    log_folder : Path
-        Where the nodes' output goes.
-    parameters : dict of dict, optional
-        Parameter overrides by node name.
+    processes : list of NodeProcess
+        The running nodes.
     say : callable, optional
         Takes a line for the user when a start takes long.
     """
@@ -50,42 +46,14 @@ class Graph:
         node: Node,
         executor: Executor,
         station: str,
-        log_folder: Path,
-        parameters: dict[str, dict[str, object]] | None = None,
+        processes: list[NodeProcess],
         say: Callable[[str], None] = lambda text: None,
     ) -> None:
         self._node = node
         self._executor = executor
         self._station = station
-        self._log_folder = log_folder
-        self._parameters = parameters or {}
         self._say = say
-        self.processes: list[NodeProcess] = []
-
-    def __enter__(self) -> Self:
-        self.start()
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.stop()
-
-    def start(self) -> None:
-        """Start all node processes; they load their models side by side."""
-        for name in NODES:
-            self.processes.append(
-                start_module(
-                    name,
-                    f'{name}.{name}_node',
-                    self._log_folder,
-                    self._station,
-                    parameters=self._parameters.get(name),
-                )
-            )
+        self.processes = processes
 
     def bring_up(self) -> None:
         """Configure and activate all nodes.
@@ -107,9 +75,9 @@ class Graph:
 
     def stop(self) -> dict[str, int]:
         """End all node processes; return their exit codes."""
-        codes = {process.name: process.stop() for process in self.processes}
-        self.processes.clear()
-        return codes
+        for process in self.processes:
+            process.terminate()
+        return {process.name: process.stop() for process in self.processes}
 
     def _transition_all(self, transition: int, name: str) -> None:
         began = time.monotonic()

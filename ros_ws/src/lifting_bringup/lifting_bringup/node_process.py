@@ -8,6 +8,8 @@ import os
 import signal
 import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,6 +17,10 @@ from lifting_bringup.graph_errors import NodeDiedError
 
 #: Order of start: what computes longest before it is ready comes first.
 NODES = ('muscle_analyzer', 'lift_predictor', 'motion_tracker', 'injury_monitor')
+
+#: Parameters of the nodes of a graph that plays a recording. A stream that the recording has will
+#: come, however busy the machine is: the tracker waits for it longer than for a live one.
+PARAMETERS: dict[str, dict[str, object]] = {'motion_tracker': {'wait': 10.0}}
 
 #: Profile of Fast DDS with which processes that start together find each other at once.
 DISCOVERY_PROFILE = Path(__file__).with_name('data') / 'fast_dds.xml'
@@ -52,10 +58,14 @@ class NodeProcess:
             text = f'{self.name} ended with exit code {code}; {self.log} ends:\n{tail}'
             raise NodeDiedError(text)
 
-    def stop(self) -> int:
-        """End the process, first gently; return its exit code."""
+    def terminate(self) -> None:
+        """Ask the process to end, if it still runs."""
         if self.process.poll() is None:
             self.process.send_signal(signal.SIGTERM)
+
+    def stop(self) -> int:
+        """End the process, first gently; return its exit code."""
+        self.terminate()
         try:
             return self.process.wait(STOP_TIMEOUT)
         except subprocess.TimeoutExpired:
@@ -132,3 +142,34 @@ def start_module(
             command, stdout=output, stderr=subprocess.STDOUT, env=environment()
         )
     return NodeProcess(name, process, log)
+
+
+@contextmanager
+def node_processes(log_folder: Path, station: str) -> Iterator[list[NodeProcess]]:
+    """Start all nodes of a graph, which load their models side by side; end them at the end.
+
+    Needs nothing of ROS, so that a command can do it before it loads what it needs itself.
+
+    Parameters
+    ----------
+    log_folder : Path
+        Where the nodes' output goes.
+    station : str
+        Namespace of the graph.
+
+    Yields
+    ------
+    list of NodeProcess
+    """
+    processes: list[NodeProcess] = []
+    try:
+        for name in NODES:
+            module = f'{name}.{name}_node'
+            values = PARAMETERS.get(name)
+            processes.append(start_module(name, module, log_folder, station, parameters=values))
+        yield processes
+    finally:
+        for process in processes:
+            process.terminate()
+        for process in processes:
+            process.stop()

@@ -26,7 +26,7 @@ from lifting_bringup.graph_errors import SessionError
 from lifting_bringup.live_state import FOLLOWED, LiveState
 from lifting_bringup.live_view import LiveView
 from lifting_bringup.results_writer import ResultsWriter
-from lifting_bringup.session import NO_LIFT, BagSummary, gauge_limits, summarise
+from lifting_bringup.session import NO_LIFT, gauge_limits, summarise
 from lifting_node.conversions import (
     lift_from_msg,
     motion_from_msg,
@@ -66,20 +66,16 @@ class OfflineGraph:
     ----------
     station : str
         Name that the alarms carry.
-    summary : BagSummary
-        Of the recording.
     emit : callable
         Takes each result: topic and message.
     complain : callable
         Takes each input error in words.
     """
 
-    def __init__(
-        self, station: str, summary: BagSummary, emit: Emit, complain: Callable[[str], None]
-    ) -> None:
+    def __init__(self, station: str, emit: Emit, complain: Callable[[str], None]) -> None:
         self._emit = emit
         self._complain = complain
-        self._tracker_values = defaults('motion_tracker') | {'wait': summary.stream_wait}
+        self._tracker_values = defaults('motion_tracker')
         self._subject: Any = None
         self._task: Any = None
         self._tracker: MotionTracker | None = None
@@ -280,7 +276,7 @@ def run_offline(bag_path: Path, output: Path, station: str = 'station_1') -> Pat
                 view.add(state.update(message))
                 view.refresh()
 
-        graph = OfflineGraph(station, summary, emit, view.warn)
+        graph = OfflineGraph(station, emit, view.warn)
         names = {name: name.strip('/') for name in bag.topics}
         wanted = [n for n, short in names.items() if short in (*summary.inputs, 'subject', 'task')]
         for name, _, message in bag.messages(wanted):

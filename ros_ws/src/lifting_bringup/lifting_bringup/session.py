@@ -8,6 +8,7 @@ import os
 import shutil
 import time
 from collections.abc import Callable
+from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -24,7 +25,7 @@ from lifting_bringup.graph import Graph
 from lifting_bringup.graph_errors import SessionError
 from lifting_bringup.live_state import FOLLOWED, LiveState
 from lifting_bringup.live_view import LiveView
-from lifting_bringup.node_process import NodeProcess, discovery, start_module
+from lifting_bringup.node_process import NodeProcess, discovery, node_processes, start_module
 from lifting_node import qos
 
 #: Topics of the results file: the recording's description and everything the graph says of it.
@@ -98,15 +99,15 @@ class RunReport:
         MCAP file with the results.
     state : LiveState
         What happened.
-    time_to_play : float
-        From the start of the command's work to the first played message [s].
+    ready : float
+        When the recording began to play [s of the monotonic clock].
     exit_codes : dict
         Exit code of each process.
     """
 
     results: Path
     state: LiveState
-    time_to_play: float
+    ready: float
     exit_codes: dict[str, int] = field(default_factory=dict)
 
 
@@ -118,15 +119,6 @@ class BagSummary:
     duration: float
     lifts_per_day: float
     inputs: tuple[str, ...]
-
-    @property
-    def stream_wait(self) -> float:
-        """How far the tracker may let the markers run ahead of plates and box [s of stamps].
-
-        A stream that the recording has will come, however fast the recording is played.
-        """
-        complete = set(PLATES) <= set(self.inputs)
-        return 3600.0 if complete else 10.0
 
 
 def summarise(path: Path) -> BagSummary:
@@ -148,8 +140,21 @@ def gauge_limits(summary: BagSummary) -> dict[str, float]:
     return {'compression': limits.compression_action.value, 'shear': limits.shear.value}
 
 
-def run_online(options: RunOptions, say: Callable[[str], None] = print) -> RunReport:
+def run_online(
+    options: RunOptions,
+    say: Callable[[str], None] = print,
+    processes: list[NodeProcess] | None = None,
+) -> RunReport:
     """Run a recording through the graph.
+
+    Parameters
+    ----------
+    options : RunOptions
+        What to run and how.
+    say : callable
+        Takes a line for the user.
+    processes : list of NodeProcess, optional
+        The nodes, if they have been started already (`node_process.node_processes`).
 
     Raises
     ------
@@ -158,40 +163,38 @@ def run_online(options: RunOptions, say: Callable[[str], None] = print) -> RunRe
     lifting_bringup.bags.exceptions.BagError
         If the recording cannot be read.
     """
-    began = time.monotonic()
-    summary = summarise(options.bag)
     logs = options.output / 'logs'
-    shutil.rmtree(options.output / 'recording', ignore_errors=True)
-    options.output.mkdir(parents=True, exist_ok=True)
-    os.environ.update(discovery())
-    rclpy.init()
-    node = Node('lift_run', namespace=options.station)
-    executor = EventsExecutor()
-    executor.add_node(node)
-    helpers: list[NodeProcess] = []
-    parameters = {'motion_tracker': {'wait': summary.stream_wait}}
-    graph = Graph(node, executor, options.station, logs, parameters, say)
-    try:
-        graph.start()
-        helpers += _start_helpers(options, logs, summary)
+    with ExitStack() as stack:
+        if processes is None:
+            processes = stack.enter_context(node_processes(logs, options.station))
+        summary = summarise(options.bag)
+        shutil.rmtree(options.output / 'recording', ignore_errors=True)
+        helpers = _start_helpers(options, logs, summary)
+        stack.callback(_stop, helpers)
         recorder, player = helpers
+        os.environ.update(discovery())
+        rclpy.init()
+        stack.callback(rclpy.try_shutdown)
+        node = Node('lift_run', namespace=options.station)
+        stack.callback(node.destroy_node)
+        executor = EventsExecutor()
+        stack.callback(executor.shutdown)
+        executor.add_node(node)
+        graph = Graph(node, executor, options.station, processes, say)
         say('starting the graph: muscle_analyzer, lift_predictor, motion_tracker, injury_monitor')
         graph.bring_up()
         session = _Session(options, summary, node, executor, graph)
         session.wait_for_service(SetBool, 'player/pause', [recorder, player])
-        ready = time.monotonic() - began
+        ready = time.monotonic()
         say(f'playing {options.bag.name} at {options.rate:g} times real time')
         session.play(player, recorder)
         codes = {'recorder': recorder.stop(), **graph.stop()}
-        results = _collect(options.output)
-        return RunReport(results, session.state, ready, codes)
-    finally:
-        for helper in helpers:
-            helper.stop()
-        graph.stop()
-        executor.shutdown()
-        node.destroy_node()
-        rclpy.try_shutdown()
+        return RunReport(_collect(options.output), session.state, ready, codes)
+
+
+def _stop(processes: list[NodeProcess]) -> None:
+    for process in processes:
+        process.stop()
 
 
 def _start_helpers(

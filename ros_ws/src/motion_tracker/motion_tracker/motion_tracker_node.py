@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import time
 from collections import deque
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -151,7 +152,7 @@ class MotionTrackerNode(PipelineNode):
         if self._tracker is None and self._subject is not None and self._task is not None:
             subject, marker_set = self._subject
             self._tracker = tracker_from(self.values, subject, marker_set, *self._task,
-                                         first_lift=self._lifts + 1)
+                                         first_lift=self._lifts + 1, clock=time.monotonic)
             self.get_logger().info(
                 f'{subject.pseudonym}: {len(self._tracker.model.names)} markers, '
                 f'{self._tracker.model_source}')

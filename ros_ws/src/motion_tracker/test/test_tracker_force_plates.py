@@ -9,10 +9,7 @@ from hypothesis import strategies as st
 
 from motion_tracker.core.errors import ForcePlateError
 from motion_tracker.core.force_plates import (
-    STANDARD_GRAVITY,
-    MassWatch,
     PlateGeometry,
-    check_body_mass,
     ground_reaction,
     total_reaction,
 )
@@ -64,26 +61,6 @@ def test_total_of_unloaded_feet_has_no_place():
     force, cop = total_reaction([foot, foot])
     assert not force.any()
     assert np.isnan(cop).all()
-
-
-@pytest.mark.parametrize(('mass', 'ok'), [(60.1, True), (58.0, False), (66.0, False)])
-def test_weight_off_by_more_than_five_percent_is_told(mass, ok):
-    rng = np.random.default_rng(4)
-    moving = 600.0 + 80.0 * np.sin(np.arange(300) / 10.0)
-    quiet = 62.6 * STANDARD_GRAVITY + rng.normal(0.0, 1.0, 100)
-    check = check_body_mass(np.concatenate([moving, quiet, moving]), 100.0, mass)
-    assert check.plate_mass == pytest.approx(62.6, abs=0.1)
-    assert check.ok is ok
-    assert f'{mass:.1f} kg' in str(check)
-
-
-def test_mass_is_checked_once_and_only_in_quiet_standing():
-    watch = MassWatch(70.0, 0.05)
-    moving = [watch.push(700.0 + 70.0 * np.sin(i / 5.0), 100.0) for i in range(300)]
-    assert not any(moving)
-    found = [check for _ in range(200) if (check := watch.push(600.0, 100.0)) is not None]
-    assert len(found) == 1
-    assert not found[0].ok
 
 
 def test_geometry_is_checked():

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A tracker from parameter values, the same for the node and for runs without ROS."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy.typing as npt
@@ -28,7 +28,8 @@ def settings_from(values: Mapping[str, Any]) -> TrackerSettings:
 
 
 def tracker_from(values: Mapping[str, Any], subject: Subject, marker_set: str, box_mass: float,
-                 box_size: npt.ArrayLike, first_lift: int = 1) -> MotionTracker:
+                 box_size: npt.ArrayLike, first_lift: int = 1,
+                 clock: Callable[[], float] | None = None) -> MotionTracker:
     """Tracker of one recording.
 
     Parameters
@@ -39,6 +40,8 @@ def tracker_from(values: Mapping[str, Any], subject: Subject, marker_set: str, b
         Of the recording; see `MotionTracker`.
     first_lift
         Number of the first lift.
+    clock
+        Time now [s], for live streams; None when reading files.
 
     Raises
     ------
@@ -49,4 +52,4 @@ def tracker_from(values: Mapping[str, Any], subject: Subject, marker_set: str, b
     plates = {side: PlateGeometry(f'{side} plate', surface_height=values['plate_surface_height'])
               for side in SIDES}
     return MotionTracker(subject, load_marker_set(name) if name else None, box_mass, box_size,
-                         plates, settings_from(values), first_lift)
+                         plates, settings_from(values), first_lift, clock)

@@ -122,6 +122,22 @@ class HandForceEstimator:
         distance = float(np.max(np.linalg.norm(hands - box, axis=1)))
         return 1.0 - smooth_step((distance - self._reach) / self.settings.fade)
 
+    def held(self, hands: Array, box: Array, support: float | None) -> float | None:
+        """Mass the hands carry at rest [kg]; None if the box may stand on something as well.
+
+        Parameters
+        ----------
+        hands, box
+            Grip centres (2, 3) and box centre (3,) [m].
+        support
+            Height the box was lifted from [m]; None if no lift is under way.
+        """
+        if self.gate(hands, box) == 0.0:
+            return 0.0
+        if support is not None and float(box[2]) - support > self.settings.free_rise:
+            return self.box_mass
+        return None
+
     def observe(self, missing: float | None, hands: Array, box: Array, speed: float,
                 lifting: bool, step: float, rest_speed: float) -> None:
         """Learn the bias and the rest height from one sample.

@@ -50,7 +50,8 @@ class LiftBuilder:
         self._box = box
 
     def build(self, lift_id: str, start: float, end: float, records: Sequence[FrameRecord],
-              rate: float, estimator: HandForceEstimator, support: float | None) -> MeasuredLift:
+              rate: float, estimator: HandForceEstimator, support: float | None,
+              doubt: str = '') -> MeasuredLift:
         """Filter and combine everything between start and end [s].
 
         Parameters
@@ -65,6 +66,8 @@ class LiftBuilder:
             Of the hand force, with the bias learnt before the lift.
         support
             Height the box was lifted from [m]; None without a box.
+        doubt
+            Why the masses cannot be right, with fields and values; empty if nothing says so.
         """
         stamps = np.array([record.stamp for record in records])
         count = int(np.floor((stamps[-1] - stamps[0]) * rate + 1e-6)) + 1
@@ -83,11 +86,13 @@ class LiftBuilder:
         forces, silent = self._ground(times)
         if silent:
             status[status == 0] = SolveStatus.TRACKER_NO_GROUND_FORCE
+        if doubt:
+            status[status == 0] = SolveStatus.TRACKER_MASS_MISMATCH
         forces |= self._hands(grid, inside, rate, q, qd, qdd, estimator, support,
                               None if silent else forces['ground_force'])
         motion = self._skeleton.body_motion(times, q, qd, qdd, **forces)
         rms, largest = self._residuals(times, records, stamps, rate)
-        report = self._report(records, inside, status, bridged, silent)
+        report = self._report(records, inside, status, bridged, silent, doubt)
         lift = Lift(lift_id, 'measured', start, end, estimator.box_mass, motion, report)
         return MeasuredLift(lift, status, rms, largest)
 
@@ -167,7 +172,7 @@ class LiftBuilder:
         return rms, largest
 
     def _report(self, records: Sequence[FrameRecord], inside: npt.NDArray[np.bool_],
-                status: IntArray, bridged: int, silent: Sequence[str]) -> SolveReport:
+                status: IntArray, bridged: int, silent: Sequence[str], doubt: str) -> SolveReport:
         solutions = [record.solution for record in records]
         words = [f'{int(inside.sum())} samples, markers '
                  f'{1000 * np.sqrt(np.nanmean([s.rms**2 for s in solutions])):.1f} mm rms']
@@ -185,6 +190,8 @@ class LiftBuilder:
         if silent:
             words.append('no complete ground reaction: samples missing of the '
                          + ' and the '.join(f'{name} plate' for name in silent))
+        if doubt:
+            words.append(doubt)
         return SolveReport(
             status=worst, message='; '.join(words),
             iterations=sum(s.iterations for s in solutions),

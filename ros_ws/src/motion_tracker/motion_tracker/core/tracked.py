@@ -33,14 +33,14 @@ class TrackerSettings:
         Vertical force below which a foot counts as off its plate [N]. A setting of this project:
         well above the noise of a plate, well below the weight of a foot.
     wait : float
-        How far the markers may run ahead of a plate or of the box before they go on without it
-        [s of stamps].
+        How long the markers wait for a plate or the box, by the clock of this machine and while
+        they come themselves, before they go on without it [s].
     longest_gap : float
         Longest stretch of lost or bad frames that is bridged by interpolation [s].
     margin : float
         Time before and after a lift that takes part in its zero-phase filters [s].
     mass_tolerance : float
-        Accepted deviation of the plates' weight from the subject's mass.
+        Accepted deviation of the plates from subject and held box, as a share.
     ik, events, hand_force
         Settings of the parts.
     """

@@ -10,31 +10,33 @@ faster, are read that much earlier.
 """
 
 from collections import Counter, deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
 
 from human_model.motion import POINTS
-from human_model.report import SolveStatus
 from human_model.skeleton_3d import Skeleton3D
 from human_model.subject import Subject
+from motion_tracker.core.arrival import Arrival
 from motion_tracker.core.dynamics import needed_force
 from motion_tracker.core.errors import TrackerError
 from motion_tracker.core.filters import CausalFilter, settling_time
 from motion_tracker.core.force_plates import (
     SIDES,
-    MassWatch,
     PlateGeometry,
     ground_reaction,
     total_reaction,
 )
 from motion_tracker.core.hand_force import HandForceEstimator
+from motion_tracker.core.initial_rest import initial_speed
 from motion_tracker.core.inverse_kinematics import IKSolution, InverseKinematics
 from motion_tracker.core.lift_events import LiftEvent, LiftEventDetector, LiftPhase
+from motion_tracker.core.live_status import LiveStatus
 from motion_tracker.core.marker_frames import MarkerFrames
 from motion_tracker.core.marker_model import model_for
 from motion_tracker.core.marker_set import MarkerSet
+from motion_tracker.core.mass_watch import MassWatch
 from motion_tracker.core.measured_lift import LiftBuilder
 from motion_tracker.core.streams import RATE_SAMPLES, SampledStream, rate_of
 from motion_tracker.core.tracked import (
@@ -74,6 +76,8 @@ class MotionTracker:
         Filters and thresholds.
     first_lift
         Number of the first lift, which goes into its name.
+    clock
+        Time now [s] by which a missing stream is given up (`Arrival`); None when reading files.
 
     Attributes
     ----------
@@ -84,7 +88,8 @@ class MotionTracker:
     def __init__(self, subject: Subject, marker_set: MarkerSet | None, box_mass: float = 0.0,
                  box_size: npt.ArrayLike = (0.0, 0.0, 0.0),
                  plates: Mapping[str, PlateGeometry] | None = None,
-                 settings: TrackerSettings | None = None, first_lift: int = 1) -> None:
+                 settings: TrackerSettings | None = None, first_lift: int = 1,
+                 clock: Callable[[], float] | None = None) -> None:
         self.settings = settings or TrackerSettings()
         self.subject = subject
         self.skeleton = Skeleton3D.of(subject)
@@ -102,7 +107,8 @@ class MotionTracker:
                                     self.counts)
         self._detectors = {FROM_BOX: LiftEventDetector(self.settings.events),
                            FROM_HANDS: LiftEventDetector(self.settings.events)}
-        self._queue: deque[tuple[float, Array]] = deque()
+        self._arrival = Arrival(self.settings.wait, self.settings.longest_gap, clock)
+        self._queue: deque[tuple[float, Array, float]] = deque()
         self._newest = -np.inf
         self._rate = 0.0
         self._filter: CausalFilter | None = None
@@ -110,14 +116,13 @@ class MotionTracker:
         self._records: list[FrameRecord] = []
         self._input: Array | None = None
         self._passed: float | None = None
-        self._settled = -np.inf
         self._last_q: Array | None = None
-        self._absent: set[str] = set()
         self._lift: tuple[str, LiftEvent, float | None] | None = None
         self._due: list[tuple[str, LiftEvent, LiftEvent, float | None]] = []
         self._lifts = first_lift - 1
         self._end_known: float | None = None
-        self._mass_watch = MassWatch(subject.mass, self.settings.mass_tolerance)
+        self._status = LiveStatus(MassWatch(subject.mass, self.settings.mass_tolerance),
+                                  settling_time(self.settings.motion_cutoff))
         self._notices: list[Output] = []
 
     @property
@@ -164,7 +169,7 @@ class MotionTracker:
         self._notices += [Notice(f'marker {name!r} is not tracked: it has no place in the marker '
                                  'model', True) for name in unknown]
         self._newest = stamp
-        self._queue.append((stamp, target))
+        self._queue.append((stamp, target, self._arrival.arrive()))
         return self._drain(False)
 
     def push_wrench(self, side: str, stamp: float, force: npt.ArrayLike, moment: npt.ArrayLike,
@@ -196,37 +201,30 @@ class MotionTracker:
         streams = list(self._wrenches.values())
         return [*streams, self._box] if self._hand_force.box_mass > 0 else streams
 
-    def _ready(self, stamp: float) -> bool:
-        """Whether every awaited stream has come up to the stamp or has been given up."""
-        for stream in self._awaited():
-            if stream.last >= stamp - 1e-9 and stream.rate > 0:
-                if stream.name in self._absent:
-                    self._absent.discard(stream.name)
-                    self._notices.append(Notice(f'{stream.name}: samples are back', True))
-                continue
-            if stream.name in self._absent:
-                continue
-            if self._newest - max(stamp, stream.last) < self.settings.wait:
-                return False
-            self._absent.add(stream.name)
-            self._notices.append(Notice(
-                f'{stream.name}: no samples {"at all" if stream.empty else "any more"} at '
-                f'{stamp:.3f} s; going on without'))
-        return True
-
     def _drain(self, final: bool) -> list[Output]:
         outputs: list[Output] = []
         if self._rate == 0.0:
             if len(self._queue) <= RATE_SAMPLES and not (final and len(self._queue) > 2):
                 return outputs
-            self._start([stamp for stamp, _ in self._queue])
-        while self._queue and (final or self._ready(self._queue[0][0])):
-            outputs += self._frame(*self._queue.popleft())
+            self._start(list(self._queue))
+        while self._queue:
+            stamp, target, arrived = self._queue[0]
+            ready, said = self._arrival.ready(stamp, arrived, self._newest, self._awaited(), final)
+            self._notices += said
+            if not ready:
+                break
+            self._queue.popleft()
+            outputs += self._frame(stamp, target)
         notices, self._notices = self._notices, []
         return notices + outputs
 
-    def _start(self, stamps: Sequence[float]) -> None:
+    def _start(self, frames: Sequence[tuple[float, Array, float]]) -> None:
+        stamps = [stamp for stamp, _, _ in frames]
         self._rate = rate_of(stamps, 'markers')
+        speed = initial_speed(stamps, [target for _, target, _ in frames])
+        if speed > self.settings.events.rest_speed:
+            self._status.settle(stamps[0], 'the filters settle: the recording begins in motion, '
+                                           f'its markers move at {speed:.2f} m/s rms')
         self._filter = CausalFilter(self._rate, self.settings.motion_cutoff,
                                     len(self.skeleton.coordinates))
         self._box_filter = CausalFilter(self._rate, self.settings.motion_cutoff, 3)
@@ -247,7 +245,7 @@ class MotionTracker:
         return outputs
 
     def _detect(self, stamp: float, solution: IKSolution) -> list[Output]:
-        if self._hand_force.box_mass > 0 and 'box' not in self._absent:
+        if self._hand_force.box_mass > 0 and 'box' not in self._arrival.absent:
             box = self._box.raw_at(stamp)
             if box is None:
                 return []
@@ -285,7 +283,7 @@ class MotionTracker:
             self._filter.reset()
             self._box_filter.reset()
             if self._input is not None:
-                self._settled = stamp + settling_time(self.settings.motion_cutoff)
+                self._status.settle(stamp, 'the filters settle after a gap in the markers')
             lost = 0
         for i in range(1, lost + 1):
             share = i / (lost + 1)
@@ -303,12 +301,10 @@ class MotionTracker:
         box_raw = self._box.raw_at(stamp) if self._hand_force.box_mass > 0 else None
         (q, qd, qdd), box = self._step_filters(stamp, previous, solution.q, box_raw)
         time = stamp - self.filter_delay
-        feet = []
-        for name in SIDES:
-            row = self._wrenches[name].filtered_at(time)
-            if row is not None:
-                feet.append(ground_reaction(row[:3], row[3:], self._plates[name],
-                                            self.settings.force_threshold))
+        rows = {name: self._wrenches[name].filtered_at(time) for name in SIDES}
+        feet = [ground_reaction(row[:3], row[3:], self._plates[name],
+                                self.settings.force_threshold)
+                for name, row in rows.items() if row is not None]
         forces: dict[str, Array] = {}
         total_force, total_cop = np.zeros(3), np.full(3, np.nan)
         missing = None
@@ -320,33 +316,42 @@ class MotionTracker:
             total_force, total_cop = force[0], cop[0]
             need = needed_force(self.skeleton, q, qd, qdd)
             missing = float(need[2] - total_force[2])
-            if self._lift is None:
-                check = self._mass_watch.push(float(total_force[2]), self._rate)
-                if check is not None:
-                    self._notices.append(Notice(str(check), check.ok))
         if box is not None:
-            forces |= self._carry(time, q, box, missing)
+            settled = None if self._status.settling(stamp) else missing
+            forces |= self._carry(time, q, box, missing, settled)
+        if missing is not None:
+            vertical, held = float(total_force[2]), self._held(q, None if box is None else box[0])
+            check = self._status.weigh(stamp, vertical, vertical + missing, held, self._rate)
+            if check is not None:
+                self._notices.append(Notice(str(check), check.ok))
         motion = self.skeleton.body_motion(time, q, qd, qdd, **forces)
-        status, message = solution.status, solution.message
-        if solution.ok and stamp < self._settled:
-            status = SolveStatus.TRACKER_MARKERS_MISSING
-            message = 'the filters settle after a gap in the markers'
-        elif solution.ok and missing is None:
-            status = SolveStatus.TRACKER_NO_GROUND_FORCE
-            message = 'no samples of ' + ' and '.join(
-                f'the {name} plate' for name in SIDES
-                if self._wrenches[name].filtered_at(time) is None)
+        silent = ' and '.join(f'the {name} plate' for name, row in rows.items() if row is None)
+        status, message = self._status.judge(stamp, solution, silent)
         return [*self._take_notices(), TrackedFrame(motion, solution, status, message,
                                                     self.filter_delay, total_force, total_cop)]
 
+    def _held(self, q: Array, box: Array | None) -> float | None:
+        """Mass in the hands [kg]; None while it is not known."""
+        mass = self._hand_force.box_mass
+        if mass == 0.0:
+            return 0.0
+        if box is None:
+            return None if self._lift is not None else 0.0
+        hands = self.skeleton.point_array(q)[0][list(_HANDS)]
+        support = self._hand_force.support if self._lift is not None else None
+        return self._hand_force.held(hands, box, support)
+
     def _carry(self, time: float, q: Array, box: tuple[Array, Array, Array],
-               missing: float | None) -> dict[str, Array]:
-        """Hand forces (1, 2, 3) [N] and box position (1, 3) [m] of the live sample."""
+               missing: float | None, settled: float | None) -> dict[str, Array]:
+        """Hand forces (1, 2, 3) [N] and box position (1, 3) [m] of the live sample.
+
+        The bias of `missing` is learnt from the samples that have it `settled` too.
+        """
         hands = self.skeleton.point_array(q)[0][list(_HANDS)]
         position, speed, acceleration = box
         since = None if self._end_known is None else time - self._end_known
         released = since is None or since > self.settings.hand_force.release_time
-        self._hand_force.observe(missing, hands, position, float(speed[2]),
+        self._hand_force.observe(settled, hands, position, float(speed[2]),
                                  self._lift is not None or not released, 1.0 / self._rate,
                                  self.settings.events.rest_speed)
         force = self._hand_force.estimate(missing, hands, position, acceleration,
@@ -366,7 +371,8 @@ class MotionTracker:
             records = [record for record in self._records
                        if start.time - margin <= record.stamp <= end.time + margin]
             outputs.append(self._builder.build(lift_id, start.time, end.time, records, self._rate,
-                                               self._hand_force, support))
+                                               self._hand_force, support,
+                                               self._status.doubt_since(start.time)))
         return outputs
 
     def _forget(self, now: float) -> None:

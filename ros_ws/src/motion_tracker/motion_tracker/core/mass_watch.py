@@ -1,0 +1,127 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Weight on the plates against the person's mass, watched whenever the person stands still."""
+
+from collections import deque
+from dataclasses import dataclass
+
+import numpy as np
+
+from motion_tracker.core.errors import ForcePlateError
+from motion_tracker.core.force_plates import STANDARD_GRAVITY
+
+
+@dataclass(frozen=True)
+class MassCheck:
+    """Comparison of the plates' weight in quiet standing with the masses as entered.
+
+    Attributes
+    ----------
+    plate_mass : float
+        Mean vertical force over standard gravity [kg].
+    subject_mass : float
+        Body mass as entered [kg].
+    box_mass : float
+        Mass of the box in the hands as entered [kg]; 0 while the hands are empty.
+    tolerance : float
+        Share of the masses entered that the plates may deviate.
+    """
+
+    plate_mass: float
+    subject_mass: float
+    box_mass: float
+    tolerance: float
+
+    @property
+    def deviation(self) -> float:
+        """Return (plates - entered) / entered."""
+        return self.plate_mass / (self.subject_mass + self.box_mass) - 1.0
+
+    @property
+    def ok(self) -> bool:
+        """Whether the plates agree with the masses."""
+        return abs(self.deviation) <= self.tolerance
+
+    def __str__(self) -> str:
+        """One line for a log, with the fields and their values."""
+        box = f' and task.box_mass: {self.box_mass:.1f} kg' if self.box_mass else ''
+        return (f'force plates: {self.plate_mass:.1f} kg in quiet standing, subject.mass: '
+                f'{self.subject_mass:.1f} kg{box}, deviation {100 * self.deviation:+.1f} %')
+
+
+class MassWatch:
+    """Waits for quiet standing, again and again, and compares the plates with the masses.
+
+    Quiet is a stretch of `WINDOW` in which the force on the plates hardly changes and the body
+    by its motion needs no more and no less than its weight: a slow squat can keep the force even
+    for as long, but not without moving its mass.
+
+    Parameters
+    ----------
+    subject_mass
+        kg.
+    tolerance
+        Accepted relative deviation: 5 % (requirement of the project).
+
+    Attributes
+    ----------
+    check : MassCheck or None
+        Of the last quiet stretch; None before the first.
+    """
+
+    #: Length of quiet standing that is averaged [s].
+    WINDOW = 0.5
+    #: Largest standard deviation of the force, and deviation of the body's mean need from its
+    #: weight, in quiet standing, as shares of the weight.
+    QUIET = 0.02
+
+    def __init__(self, subject_mass: float, tolerance: float) -> None:
+        if not (subject_mass > 0 and tolerance > 0):
+            raise ForcePlateError(f'mass watch: {subject_mass} kg and a tolerance of {tolerance} '
+                                  'must be positive')
+        self.check: MassCheck | None = None
+        self._mass = subject_mass
+        self._tolerance = tolerance
+        self._box_mass: float | None = None
+        self._recent: deque[tuple[float, float]] = deque()
+
+    @property
+    def agrees(self) -> bool:
+        """Whether nothing speaks against the masses: no quiet stretch yet, or a good last one."""
+        return self.check is None or self.check.ok
+
+    def push(self, vertical: float, need: float, box_mass: float | None, rate: float,
+             ) -> MassCheck | None:
+        """Take one sample; return the check when there is a first one or its verdict changes.
+
+        Parameters
+        ----------
+        vertical
+            Total vertical force of the ground [N].
+        need
+            Vertical force that the motion of the body needs, weight included [N].
+        box_mass
+            Mass in the hands [kg]; None: not known, the sample is no part of a quiet stretch.
+        rate
+            Samples per second [Hz].
+        """
+        if box_mass is None or box_mass != self._box_mass:
+            self._recent.clear()
+            self._box_mass = box_mass
+        if box_mass is None:
+            return None
+        self._recent.append((vertical, need))
+        if len(self._recent) < max(2, round(self.WINDOW * rate)):
+            return None
+        forces, needs = np.array(self._recent).T
+        self._recent.popleft()
+        weight = self._mass * STANDARD_GRAVITY
+        if forces.mean() <= 0 or forces.std() > self.QUIET * forces.mean() \
+                or abs(needs.mean() - weight) > self.QUIET * weight:
+            return None
+        # The next stretch shares no sample with this one.
+        self._recent.clear()
+        before = self.check
+        self.check = MassCheck(float(forces.mean()) / STANDARD_GRAVITY, self._mass, box_mass,
+                               self._tolerance)
+        return self.check if before is None or before.ok is not self.check.ok else None
