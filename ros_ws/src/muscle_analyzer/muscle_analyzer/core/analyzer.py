@@ -26,9 +26,9 @@ from muscle_analyzer.core.analysis_sample import AnalysisSample, SampleSolver
 from muscle_analyzer.core.analyzer_options import MuscleAnalyzerOptions
 from muscle_analyzer.core.disc_frame import disc_option
 from muscle_analyzer.core.exceptions import InputArrayError, NotConfiguredError
+from muscle_analyzer.core.model_cache import load_model
 from muscle_analyzer.core.muscle_analysis import MuscleAnalysis
 from muscle_analyzer.core.osim_model import OsimModel
-from muscle_analyzer.core.osim_reader import read_osim
 from muscle_analyzer.core.segment_masses import MassDistribution, segment_masses
 from muscle_analyzer.core.subject_model import lifting_model_path, subject_model
 from muscle_analyzer.core.torque_limits import JointTorques, TorqueLimits
@@ -102,7 +102,7 @@ class MuscleAnalyzer:
         self._subject = None
 
     def _read(self) -> OsimModel:
-        return read_osim(self.options.model_path or lifting_model_path())
+        return load_model(self.options.model_path or lifting_model_path())
 
     def _warm_up(self, skeleton: Skeleton) -> None:
         q = skeleton.standing()

@@ -24,7 +24,7 @@ from muscle_analyzer.core.kinematics import body_jacobians, forward_kinematics
 from muscle_analyzer.core.multibody import MultibodyModel
 from muscle_analyzer.core.muscle_curves import MuscleParameters
 from muscle_analyzer.core.muscle_path_table import path_table
-from muscle_analyzer.core.muscle_paths import body_wrenches, muscle_paths
+from muscle_analyzer.core.muscle_paths import body_wrenches, posture_paths
 from muscle_analyzer.core.recruitment import least_activations, muscle_weights
 from muscle_analyzer.core.reserves import read_reserves
 from muscle_analyzer.core.static_optimization import MuscleBalance, StaticOptimization
@@ -142,7 +142,7 @@ class LoadSolver:
         state = forward_kinematics(tree, q, qd, qdd)
         dynamics = inverse_dynamics(tree, state, external)
         jacobian = body_jacobians(tree, state)
-        paths = muscle_paths(self._table, state.position, state.rotation, jacobian)
+        paths = posture_paths(self._table, state, jacobian)
         if self._options.force_length_velocity:
             speed = -paths.moment_arm @ qd
             strength = self._muscles.state(paths.length, speed, self._options.passive_force)
