@@ -110,7 +110,7 @@ def test_bisection_ends_within_its_tolerance() -> None:
     nearest = closer_lift(attempt, attempt(1.0), way, lambda share: f'{share:.4f}')
     share = float(nearest.change)
     assert 0.0 <= (border - share) * way <= PLACE_TOLERANCE
-    assert nearest.limit == 'arm too short'
+    assert nearest.limit.startswith('reach of the hands (arm too short; at 0.6')
     assert len(tried) <= 2 + np.log2(way / PLACE_TOLERANCE) + 1
 
 

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from human_model.errors import HumanModelError
@@ -12,14 +12,19 @@ from human_model.report import SolveReport, SolveStatus
 from human_model.subject import Subject
 from lift_predictor.core.exceptions import TaskError, UnreachableError
 from lift_predictor.core.maximum_weight import Weighting
+from lift_predictor.core.planning.build import build_plan
 from lift_predictor.core.planning.feet import Placement, place_feet
+from lift_predictor.core.planning.nearest import nearest_plan
 from lift_predictor.core.planning.plan_task import PlanTask
 from lift_predictor.core.planning.solve import Listener, SolvedPlan, solve_plan
 from lift_predictor.core.predictor import LiftPredictor
-from lift_predictor.core.sagittal.prediction import PredictedLift2D
+from lift_predictor.core.sagittal.feasibility import HOPELESS, with_nearest
+from lift_predictor.core.sagittal.prediction import NearestLift, PredictedLift2D
 
 STARTS: Final = 4
 """Made-up initial guesses for the lift itself."""
+PROBES: Final = 2
+"""Made-up initial guesses for each place on the way to the nearest lift that can be done."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,21 +104,53 @@ class LiftPlanner:
         -------
         PlannedLift
             Its report says whether there is a lift, and otherwise why not: out of reach, too heavy
-            (the limit that breaks first is named), not sagittal.
+            (the limit that breaks first is named, and the nearest lift that can be done is in
+            `prediction.nearest`), not sagittal.
         """
         weights = weighting or self.weighting
+        planned = self._plan(subject, task, listener, weights)
+        failed = planned.prediction
+        if failed.report.status not in HOPELESS:
+            return planned
+        nearest: NearestLift | None = None
+        if failed.report.status is not SolveStatus.PREDICTOR_UNREACHABLE and task.box_mass:
+            # Where the lift was sought: with free feet, at the place that came nearest.
+            nearest = self._lighter(task, planned.ankle)
+        if nearest is None:
+            nearest = nearest_plan(
+                lambda other: self._plan(subject, other, listener, weights, PROBES).prediction,
+                task,
+                failed,
+            )
+        return replace(planned, prediction=with_nearest(failed, nearest))
+
+    def _lighter(self, task: PlanTask, ankle: float) -> NearestLift | None:
+        if self.predictor.person is None:
+            raise TaskError('subject: none was configured before the plan')
+        plan = build_plan(self.predictor.person, task, ankle)
+        starts = plan.starts(self.predictor.programme.grid.spline, STARTS)
+        return self.predictor.lighter_lift(plan.task, starts)
+
+    def _plan(
+        self,
+        subject: Subject,
+        task: PlanTask,
+        listener: Listener | None,
+        weights: Weighting,
+        n_starts: int = STARTS,
+    ) -> PlannedLift:
         try:
             self.predictor.configure(subject)
             if task.feet is not None:
                 solved = solve_plan(
-                    self.predictor, task, task.feet[0], STARTS, weights, listener=listener
+                    self.predictor, task, task.feet[0], n_starts, weights, listener=listener
                 )
                 return _planned(subject, task, solved, ())
             found, placements = place_feet(self.predictor, task, weights, listener)
             ankle = float(found.plan.task.parameters.ankle[0])
             if found.prediction.report.ok:
                 again = solve_plan(
-                    self.predictor, task, ankle, STARTS, weights, (found.start(),), listener
+                    self.predictor, task, ankle, n_starts, weights, (found.start(),), listener
                 )
                 found = min(again, found, key=lambda solved: solved.value)
             return _planned(subject, task, found, placements)

@@ -22,7 +22,7 @@ from human_model.report import SolveStatus
 from lift_predictor.core.exceptions import TaskError
 from lift_predictor.core.sagittal.prediction import NearestLift, PredictedLift2D
 from lift_predictor.core.sagittal.task import INSTANTS, Box, LiftTask2D
-from lift_predictor.core.solvers.ipopt import Start
+from lift_predictor.core.solvers.optimum import Start
 
 Array = NDArray[np.float64]
 
@@ -140,7 +140,11 @@ def first_limit(binding: Sequence[str]) -> str:
 def _limit_of(failed: PredictedLift2D) -> str:
     if failed.optima and failed.optima[0].violated:
         return failed.optima[0].violated
-    return failed.report.message.split(':')[0]
+    if failed.verification is not None and not failed.verification.passed:
+        return failed.verification.failures()
+    where, _, details = failed.report.message.partition(': ')
+    joints = details.rsplit('; ', 1)[-1]
+    return f'reach of the hands ({where}; {joints})' if joints else f'reach of the hands ({where})'
 
 
 def way_to(task: LiftTask2D, box: Box) -> Array:
