@@ -200,7 +200,7 @@ def test_commands_exist(path: Path) -> None:
     for code in code_of(path):
         for words in re.findall(r'^(?:PYTHON=\S+ )?make ((?:[a-z-]+ ?)+)', code):
             assert set(words.split()) <= make_targets(), code
-        match = re.search(r'(?:^|bringup )(?:\.venv/bin/)?lift ([a-z]+)(.*)', code)
+        match = re.search(r'(?:^|bringup )(?:\.venv/bin/)?lift ([a-z][a-z-]*)(.*)', code)
         if match:
             assert match[1] in commands, code
             assert set(re.findall(r'(--[a-z-]+)', match[2])) <= commands[match[1]], code
