@@ -41,7 +41,7 @@ ROSDEP_KEYS = {
     'yaml': 'python3-yaml',
 }
 # Only on PyPI and without a rosdep key; the README says how to install them.
-WITHOUT_ROSDEP_KEY = {'casadi', 'ezc3d'}
+WITHOUT_ROSDEP_KEY = {'casadi', 'distributed', 'ezc3d', 'pyarrow'}
 STANDARD_LIBRARY = sys.stdlib_module_names | {'compression'}  # compression: from Python 3.14
 # Started as processes by the launch files, or read as installed data; not imported.
 STARTED_BY_BRINGUP = {'motion_tracker', 'lift_predictor', 'muscle_analyzer', 'injury_monitor'}

@@ -33,3 +33,7 @@ class CancelledError(LiftPredictorError):
 
 class PercentileError(LiftPredictorError):
     """No plausible strength explains a maximum lift, or a prediction on the way failed."""
+
+
+class StudyError(LiftPredictorError):
+    """A study's folder or scheduler cannot be used; names it."""
