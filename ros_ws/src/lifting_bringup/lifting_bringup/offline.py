@@ -194,6 +194,7 @@ class OfflineGraph:
         muscles = muscle_messages.analysis_to_msg(analysis)
         self._emit('spine_load', spine)
         self._emit('joint_torques', torques)
+        self._emit('joint_reactions', muscle_messages.joint_reactions_to_msg(analysis))
         self._emit('muscle_analysis', muscles)
         if source == 'live':
             for reaction in muscle_messages.reactions_to_msg(analysis):

@@ -41,6 +41,7 @@ RESULT_TOPICS = (
     'muscle_analysis',
     'spine_load',
     'l5_s1/reaction',
+    'joint_reactions',
     'joint_torques',
     'risk_assessment',
     'alarms',
