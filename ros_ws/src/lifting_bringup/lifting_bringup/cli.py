@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""The `lift` command: import, play, record, run, report, demo, compare-opensim."""
+"""The `lift` command: import, play, record, run, report, demo, compare-opensim, predict, study."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from lifting_bringup import opensim_command
+from lifting_bringup import opensim_command, planning_command, study_command
 from lifting_bringup.bags.exceptions import BagError
 from lifting_bringup.graph_errors import GraphError
 from lifting_bringup.node_process import discovery, node_processes
@@ -95,6 +95,8 @@ def _parser() -> argparse.ArgumentParser:
     report.set_defaults(handler=_report)
 
     opensim_command.add_to(commands)
+    planning_command.add_to(commands)
+    study_command.add_to(commands)
     return parser
 
 
