@@ -3,9 +3,9 @@
 """CasADi functions as straight-line C code, divided into what depends on a sweep's seed and not.
 
 The instructions are brought into single-assignment form. Those without a seed among their
-arguments make the base pass; the values that sweeps need of it are kept in an array. Each seed's own
-make its sweep. Long passes are cut into several C functions, because compilers take long for large
-ones; values that cross a cut are kept in a work array, all others are local variables.
+arguments make the base pass; the values that sweeps need of it are kept in an array. Each seed's
+own make its sweep. Long passes are cut into several C functions, because compilers take long for
+large ones; values that cross a cut are kept in a work array, all others are local variables.
 """
 
 from __future__ import annotations

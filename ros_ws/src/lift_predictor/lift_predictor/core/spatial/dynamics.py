@@ -55,7 +55,7 @@ class Loads:
 
 
 def loads(state: BodyState, box_mass: Any, p: Any) -> Loads:
-    """Loads of one instant.
+    """Compute the loads of one instant.
 
     Parameters
     ----------

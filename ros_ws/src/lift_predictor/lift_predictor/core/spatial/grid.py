@@ -35,11 +35,14 @@ GROUND_ROWS: Final = (
     *(f'vertical ground reaction of the {side} foot' for side in _SIDES),
 )
 COLLISION_ROWS: Final = tuple(f'collision (3.10) of the box with the {n}' for n in SPHERE_NAMES)
+SECTOR_ROWS: Final = ('box in its sector, right edge', 'box in its sector, left edge')
 HAND_ROWS: Final = ('distance of the hands (3.11)', 'box level (3.12)')
-NODE_ROWS: Final = (*TORQUE_ROWS, *ANGLE_ROWS, *GROUND_ROWS, *COLLISION_ROWS, *HAND_ROWS)
-"""Rows of every node. Units: torques 0 at the lower and 1 at the upper dynamic limit; angles [rad];
-balance 0 at the heels, 1 at the tips of the toes; ground reactions per body weight; collision
-squared distance per squared sum of radii, less 1; hands `HAND_SCALE`."""
+NODE_ROWS: Final = (
+    *TORQUE_ROWS, *ANGLE_ROWS, *GROUND_ROWS, *COLLISION_ROWS, *SECTOR_ROWS, *HAND_ROWS,
+)  # fmt: skip
+"""Rows of every node. Units: torques 0 at the lower and 1 at the upper dynamic limit; angles
+[rad]; balance 0 at the heels, 1 at the tips of the toes; ground reactions per body weight; collision
+squared distance per squared sum of radii, less 1; sector and hands `HAND_SCALE`."""
 
 LIMITED: Final = SPLINED[4:]
 """Splined coordinates with joint limits: knees, spine, arms."""
@@ -57,6 +60,7 @@ REPORT_OUTPUTS: Final = (
     ('angles', len(DEPENDENT)),
     ('gaps', len(SPHERE_NAMES)),
     ('share', 1),
+    ('inside', 2),
 )
 """Outputs of the report and their sizes, in physical units."""
 
@@ -153,7 +157,7 @@ class SpatialBounds:
 
     Attributes
     ----------
-    node_lower, node_upper : array, shape (n_nodes, 55)
+    node_lower, node_upper : array, shape (n_nodes, 57)
         Bounds of `NODE_ROWS` at each node; posture (3.15) and ground reaction windows (3.16, 5.1)
         are narrower bounds at some nodes.
     angle_lower, angle_upper : array, shape (n_nodes, 22)

@@ -31,6 +31,7 @@ from lift_predictor.core.spatial.parameters import (
     unpack,
 )
 
+
 def kernel_functions() -> list[NodeFunction]:
     """Return the node functions of the compiled library.
 
@@ -88,7 +89,7 @@ def _instant(q: Any, dq: Any, ddq: Any, mass: Any, p: Any) -> dict[str, Any]:
     right, left = (hand[0] for hand in state.hand)
     width = blocks['box_width'][0][0]
     apart = left - right
-    gaps, clear = _collision(state, right, left, blocks)
+    gaps, clear, inside = _collision(state, right, left, blocks)
     return {
         'torque': load.torque,
         'lower': lower,
@@ -106,17 +107,22 @@ def _instant(q: Any, dq: Any, ddq: Any, mass: Any, p: Any) -> dict[str, Any]:
             load.ground_force[0][2] / weight,
             load.ground_force[1][2] / weight,
             clear,
+            inside / HAND_SCALE,
             (ca.sumsqr(apart) / width - width) / (2.0 * HAND_SCALE),
             apart[2] / HAND_SCALE,
         ),
         'angles': ca.vertcat(*(state.angle[name] for name in DEPENDENT)),
         'gaps': gaps,
         'share': load.share,
+        'inside': inside,
     }
 
 
-def _collision(state: Any, right: Any, left: Any, blocks: dict[str, Any]) -> tuple[Any, Any]:
-    """Distances [m] and scaled squared distances of equation 3.10 (positive: clear)."""
+def _collision(state: Any, right: Any, left: Any, blocks: dict[str, Any]) -> tuple[Any, ...]:
+    """Distances of the box from the spheres, the same scaled and squared, and inside its sector.
+
+    All [m] but the second (equation 3.10); positive: clear, inside.
+    """
     line = left - right
     length = ca.sqrt(line[0] ** 2 + line[1] ** 2)
     forward, up = ca.vertcat(line[1], -line[0], 0.0) / length, ca.vertcat(0.0, 0.0, 1.0)
@@ -133,4 +139,5 @@ def _collision(state: Any, right: Any, left: Any, blocks: dict[str, Any]) -> tup
         gaps.append(ca.if_else(used, ca.sqrt(square) - reach, 1.0))
         # An unused sphere reads "clear" whatever the posture.
         rows.append(ca.if_else(used, square / reach**2 - 1.0, 1.0))
-    return ca.vertcat(*gaps), ca.vertcat(*rows)
+    inside = [ca.dot(box[:2], ca.vertcat(*normal)) for normal in blocks['sector']]
+    return ca.vertcat(*gaps), ca.vertcat(*rows), ca.vertcat(*inside)

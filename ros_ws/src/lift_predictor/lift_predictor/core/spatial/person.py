@@ -31,8 +31,8 @@ Array = NDArray[np.float64]
 
 COEFFICIENT_SET: Final = 'anderson2007_nonneg'
 INWARD_LEAN: Final = 0.6
-"""Fits the public recording keenon/nimblephysics data/grf/Subject4 squats1 at rest: 36 N lateral in
-each foot at 590 N, feet 0.38 m apart."""
+"""Fits the public recording keenon/nimblephysics data/grf/Subject4 squats1 at rest: 36 N lateral
+in each foot at 590 N, feet 0.38 m apart."""
 
 _CARRIED: Final = {'thorax': 'head', 'foot_r': 'toes_r', 'foot_l': 'toes_l'}
 """Segments that move with another one."""
@@ -132,7 +132,7 @@ class SpatialPerson:
         return rows[:, 0], rows[:, 1]
 
     def fields(self) -> dict[str, Any]:
-        """The person's fields of `SpatialParameters`."""
+        """Return the person's fields of `SpatialParameters`."""
         names = ('body', 'pelvis', 'spine', 'arm', 'leg', 'strength_lower', 'strength_upper',
                  'sphere', 'sole', 'gravity')  # fmt: skip
         return {name: getattr(self, name) for name in names} | {'inward_lean': INWARD_LEAN}

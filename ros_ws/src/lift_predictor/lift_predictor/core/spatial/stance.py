@@ -4,8 +4,8 @@
 
 The root of the motion is not the pelvis but six numbers that keep both feet where they are:
 both knee angles set the distances of the hips from the ankles, which gives the pelvis its height
-and list; the hips' middle and the turn of the line of the hips are coordinates of their own. As the
-knees are coordinates and no result, a straight knee is not singular.
+and list; the hips' middle and the turn of the line of the hips are coordinates of their own. As
+the knees are coordinates and no result, a straight knee is not singular.
 """
 
 from __future__ import annotations
@@ -86,8 +86,8 @@ def _list(
     With P from the ankles' to the hips' middle, e the line of the hips to the left, b its half
     length, D half the way from right to left ankle and v = b e - D, the distances are
     |P + v| = d_left, |P - v| = d_right, that is P v = (d_left^2 - d_right^2) / 4 and
-    |P|^2 + |v|^2 = (d_left^2 + d_right^2) / 2. The second gives P_z for a list, the first is solved
-    for the list by Newton's method.
+    |P|^2 + |v|^2 = (d_left^2 + d_right^2) / 2. The second gives P_z for a list, the first is
+    solved for the list by Newton's method.
     """
     c, s = ca.cos(turn), ca.sin(turn)
     across = half * (c * y - s * x)

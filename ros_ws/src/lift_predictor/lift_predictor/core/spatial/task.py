@@ -29,6 +29,9 @@ from lift_predictor.core.spatial.person import SpatialPerson
 
 Array = NDArray[np.float64]
 
+SECTOR_MARGIN: Final = float(np.radians(20.0))
+"""How far the box may leave the sector of its way to either side (our choice) [rad]."""
+
 KEY_JOINTS: Final = (
     *(f'{joint}_{side}' for side in SIDES for joint in (
         'ankle_angle', 'knee_angle', 'hip_flexion', 'elbow_flex',
@@ -76,12 +79,15 @@ class Recorded:
         `KEY_JOINTS` as recorded [rad].
     vertical : array, shape (n, 2)
         Vertical force of the ground on right and left foot [N].
+    forward : array, shape (n,)
+        Force of the ground on both feet along their mean direction [N].
     """
 
     time: Array
     q: Array
     key: dict[str, Array]
     vertical: Array
+    forward: Array
 
     def at(self, values: Array, time: float) -> Array:
         """Values (n, ...) at a time [s]."""
@@ -156,6 +162,29 @@ class PlacedBox:
         half = 0.5 * self.width * left
         return np.hstack((self.places - half, self.places + half))
 
+    def sector(self, way: Array | None = None) -> Array:
+        """Edges of the sector between start and end as `SpatialParameters.sector`.
+
+        Parameters
+        ----------
+        way : array, shape (n, 3), optional
+            A recorded way that belongs to it too [m].
+
+        Raises
+        ------
+        TaskError
+            The sector, with its margins, is wider than half a turn.
+        """
+        places = self.places if way is None else np.vstack((self.places[:1], way, self.places[1:]))
+        seen = np.unwrap(np.arctan2(places[:, 1], places[:, 0]))
+        right, left = seen.min() - SECTOR_MARGIN, seen.max() + SECTOR_MARGIN
+        if left - right >= np.pi:
+            raise TaskError(
+                f'box: its way turns {np.degrees(np.ptp(seen)):.0f} deg round the ankles; at most '
+                f'{180.0 - 2.0 * np.degrees(SECTOR_MARGIN):.0f} deg can be predicted'
+            )
+        return np.array([[-np.sin(right), np.cos(right)], [np.sin(left), -np.cos(left)]])
+
 
 def place_task(
     person: SpatialPerson,
@@ -164,6 +193,7 @@ def place_task(
     duration: tuple[float, float],
     grid: SpatialGrid,
     lift_id: str = 'lift',
+    way: Array | None = None,
 ) -> SpatialTask:
     """Task without a recording, from the places alone: no windows.
 
@@ -181,6 +211,8 @@ def place_task(
         Sizes of the programme.
     lift_id : str
         Name of the lift.
+    way : array, shape (n, 3), optional
+        Recorded way of the hands' middle [m].
 
     Raises
     ------
@@ -205,6 +237,7 @@ def place_task(
         # A uniform cuboid.
         box_turning=(box.depth**2 + box.width**2) / (12.0 * box.width**2),
         box_from_hand=box.from_hand,
+        sector=box.sector(way),
     )
     rows = plain_bounds(grid.n_nodes, person.limits(DEPENDENT), person.limits(LIMITED))
     bounds = SpatialBounds(*rows, box.grips(), np.array(box.mass), np.array(duration))
@@ -247,9 +280,9 @@ def recorded_task(
     frame = StanceFrame.of(motion, person)
     recorded = _recorded(motion, lift, frame, person)
     duration = lift.end - lift.start
-    placed = _placed_box(motion, frame, box, mass or (box.mass, box.mass))
-    limits = tuple(duration * part for part in windows.duration)
-    task = place_task(person, frame, placed, (limits[0], limits[1]), grid, lift.lift_id)
+    placed, way = _placed_box(motion, frame, box, mass or (box.mass, box.mass))
+    limits = (duration * windows.duration[0], duration * windows.duration[1])
+    task = place_task(person, frame, placed, limits, grid, lift.lift_id, way)
     parameters, notes = _fit_spheres(task.parameters, motion, frame, person)
     bounds = _windows(task, recorded, windows, grid, duration)
     return replace(
@@ -272,12 +305,13 @@ def _recorded(
         q,
         {name: motion.coordinate(name) for name in KEY_JOINTS},
         motion.ground_force[:, :, 2],
+        motion.ground_force.sum(axis=1) @ frame.rotation()[:, 0],
     )
 
 
 def _placed_box(
     motion: BodyMotion, frame: StanceFrame, box: Box, mass: tuple[float, float]
-) -> PlacedBox:
+) -> tuple[PlacedBox, Array]:
     """Hands as recorded, made level and given one distance: the box is rigid."""
     hands = np.stack([frame.into(motion.point(f'hand_{side}')) for side in SIDES], axis=1)
     line = hands[:, 1] - hands[:, 0]
@@ -302,7 +336,7 @@ def _placed_box(
             a, b = c[index], s[index]
             turned = np.array([[a, -b, 0.0], [b, a, 0.0], [0.0, 0.0, 1.0]]) @ from_hand
             places[row] = frame.into(np.asarray(wanted, dtype=float)) - turned
-    return PlacedBox(mass, box.depth, width, places, turns[[0, -1]], from_hand)
+    return PlacedBox(mass, box.depth, width, places, turns[[0, -1]], from_hand), middle
 
 
 def _fit_spheres(

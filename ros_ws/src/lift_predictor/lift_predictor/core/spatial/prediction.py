@@ -1,0 +1,111 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""The result of a spatial prediction: motion, torques, and the certificate of the optimum."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from human_model.motion import Lift
+from human_model.report import SolveReport
+from lift_predictor.core.solvers.solution import Solution
+from lift_predictor.core.spatial.evaluation import SpatialLoads
+from lift_predictor.core.spatial.verify import SpatialVerification
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class SpatialOptimum:
+    """Where the solver ended from one start.
+
+    Attributes
+    ----------
+    start : str
+        Name of the start.
+    solution : Solution
+        Variables: free control values, box mass, duration.
+    """
+
+    start: str
+    solution: Solution
+
+    @property
+    def converged(self) -> bool:
+        """Whether it is a solution."""
+        return self.solution.ok
+
+
+@dataclass(frozen=True, eq=False)
+class PredictedLift3D:
+    """Result of one prediction; without a good solution it holds the report only.
+
+    Attributes
+    ----------
+    lift_id : str
+        Of the lift.
+    box_mass, duration : float
+        [kg], [s].
+    report : SolveReport
+        Status 0: good data.
+    lift : Lift or None
+        The predicted motion on the 3D skeleton, in the laboratory.
+    torque_names : tuple of str
+        All joints of the skeleton.
+    torque, torque_lower, torque_upper : array, shape (n, 34)
+        Joint torques and dynamic limits [N m].
+    zmp : array, shape (n,)
+        Zero-moment point along the mean direction of the feet, from between the ankles [m].
+    support : array, shape (2,)
+        Rear and front edge of the feet along the same direction [m].
+    loads : SpatialLoads or None
+        The same by the model, in the stance frame.
+    optima : tuple of SpatialOptimum
+        All runs, the one kept first.
+    verification : SpatialVerification or None
+        Dense-grid check.
+    notes : tuple of str
+        Adaptations of the task, and how the functions were run.
+    """
+
+    lift_id: str
+    box_mass: float
+    duration: float
+    report: SolveReport
+    lift: Lift | None
+    torque_names: tuple[str, ...]
+    torque: Array
+    torque_lower: Array
+    torque_upper: Array
+    zmp: Array
+    support: Array
+    loads: SpatialLoads | None
+    optima: tuple[SpatialOptimum, ...]
+    verification: SpatialVerification | None
+    notes: tuple[str, ...]
+
+    @property
+    def control(self) -> Array:
+        """Free control values (n_free, 26) of the run that was kept."""
+        return self.optima[0].solution.x[:-2].reshape(-1, 26)
+
+    @classmethod
+    def failed(
+        cls,
+        lift_id: str,
+        box_mass: float,
+        duration: float,
+        report: SolveReport,
+        optima: tuple[SpatialOptimum, ...] = (),
+        verification: SpatialVerification | None = None,
+        notes: tuple[str, ...] = (),
+    ) -> PredictedLift3D:
+        """Make a result that carries a report and no data."""
+        none = np.zeros((0, 0))
+        return cls(
+            lift_id, box_mass, duration, report, None, (), none, none, none, np.zeros(0),
+            np.full(2, np.nan), None, optima, verification, notes,
+        )  # fmt: skip

@@ -1,0 +1,78 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Initial guesses of the spatial programme: several, as there are local minima."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lift_predictor.core.spatial.grid import SpatialGrid
+from lift_predictor.core.spatial.task import SpatialTask
+
+Array = NDArray[np.float64]
+
+_DENSE: Final = 41
+
+
+@dataclass(frozen=True, eq=False)
+class SpatialStart:
+    """Named initial guess: free control values (n_free, 26), box mass [kg], duration [s]."""
+
+    name: str
+    control: Array
+    box_mass: float
+    duration: float
+
+    def variables(self) -> Array:
+        """Variables of the programme."""
+        return np.concatenate((self.control.ravel(), (self.box_mass, self.duration)))
+
+
+def smooth_step(s: Array) -> Array:
+    """Minimum-jerk step from 0 to 1 (Flash and Hogan 1985): rest at both ends."""
+    return np.asarray(10.0 * s**3 - 15.0 * s**4 + 6.0 * s**5)
+
+
+def recorded_starts(task: SpatialTask, grid: SpatialGrid) -> tuple[SpatialStart, ...]:
+    """Return the recorded lift, and a smooth step through its first, middle and last posture.
+
+    Parameters
+    ----------
+    task : SpatialTask
+        With a recorded lift.
+    grid : SpatialGrid
+        Sizes of the programme.
+    """
+    recorded = task.recorded
+    assert recorded is not None
+    s = np.linspace(0.0, 1.0, _DENSE)
+    whole = recorded.time[-1]
+    motion = np.stack([np.interp(s * whole, recorded.time, c) for c in recorded.q.T], axis=1)
+    mass = float(task.bounds.box_mass.mean() if np.ptp(task.bounds.box_mass) == 0.0 else 0.0)
+    return (
+        SpatialStart('recorded motion', grid.spline.fit(s, motion), mass, task.duration),
+        through(
+            task, grid, (motion[0], motion[_DENSE // 2], motion[-1]), 'smooth step', mass
+        ),
+    )
+
+
+def through(
+    task: SpatialTask,
+    grid: SpatialGrid,
+    postures: tuple[Array, Array | None, Array],
+    name: str,
+    mass: float,
+) -> SpatialStart:
+    """Smooth step between two postures (26,), over a middle one if it is given."""
+    s = np.linspace(0.0, 1.0, _DENSE)
+    first, middle, last = postures
+    plain = first + smooth_step(s)[:, None] * (last - first)
+    if middle is not None:
+        bump = (16.0 * s**2 * (1.0 - s) ** 2)[:, None]
+        plain = plain + bump * (middle - plain[_DENSE // 2])
+    return SpatialStart(name, grid.spline.fit(s, plain), mass, task.duration)
