@@ -45,7 +45,12 @@ def library_source(functions: Sequence[DerivedFunction]) -> str:
     parts, entries = [], []
     for function in functions:
         names = {}
+        # Functions too large to be written out bring their own code (sweeps.py).
+        own_source = getattr(function, 'source', None)
         for kind in ARGUMENTS:
+            names[kind] = f'{function.name}_{kind}'
+            if own_source is not None:
+                continue
             derived = getattr(function, kind)
             names[kind] = 'NULL'
             if derived is not None:
@@ -58,6 +63,8 @@ def library_source(functions: Sequence[DerivedFunction]) -> str:
             numbers = ', '.join(str(i) for i in indices) or '0'
             parts.append(f'static const int {name}[] = {{{numbers}}};')
             tables.append(name)
+        if own_source is not None:
+            parts.append(own_source())
         sizes = (
             function.n_in, function.n_parameters, function.n_rows,
             len(function.jacobian_row), len(function.hessian_row),
