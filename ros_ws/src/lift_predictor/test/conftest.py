@@ -19,10 +19,11 @@ from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.sagittal.comparison import LiftComparison
 from lift_predictor.core.sagittal.evaluation import evaluate, sample
 from lift_predictor.core.sagittal.kinematics import pelvis_motion, reach
-from lift_predictor.core.sagittal.node_functions import node_functions
 from lift_predictor.core.sagittal.parameters import JOINTS, LiftParameters
 from lift_predictor.core.sagittal.person import Person
 from lift_predictor.core.sagittal.prediction import PredictedLift2D
+from lift_predictor.core.sagittal.programme import sagittal_library
+from lift_predictor.core.sagittal.report_function import ReportFunction
 from lift_predictor.core.sagittal.task import Box
 
 BOX_DEPTH, BOX_HEIGHT = 0.238, 0.127
@@ -60,7 +61,7 @@ def parameters(person: Person) -> LiftParameters:
 @pytest.fixture(scope='session')
 def make_lift(person: Person) -> MakeLift:
     """Return a function that makes a recorded lift on the 2D skeleton."""
-    report = node_functions()['report']
+    report = ReportFunction(sagittal_library())
 
     @cache
     def make(

@@ -30,7 +30,7 @@ def test_pearson_and_rms() -> None:
 def test_a_lift_against_itself_is_no_distance(make_lift, outcome, predictor, person) -> None:
     result = outcome(7.0)
     task = build_task(person, result.lift, result.box)
-    report = predictor.programme.functions['report']
+    report = predictor.programme.report
     recorded = task.measured
     loads = evaluate(report, recorded.q, recorded.dq, recorded.ddq, task.parameters)
     same = compare(report, task, recorded.time, recorded.q, loads, 1.0)

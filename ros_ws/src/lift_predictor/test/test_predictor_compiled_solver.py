@@ -40,7 +40,7 @@ def lift(make_lift, person: Person) -> Callable[[float], tuple[SplineProgramme, 
 
     def make(mass: float) -> tuple[SplineProgramme, list[np.ndarray]]:
         task = build_task(person, make_lift(mass), Box(mass, 0.238))
-        programme = sagittal_programme(assembler, GRID, task.parameters, task.bounds)
+        programme = sagittal_programme(assembler, GRID, task.parameters.pack(), task.bounds)
         starts = [
             np.append(start.control.ravel(), mass) for start in make_starts(task, GRID.spline)
         ]

@@ -124,7 +124,7 @@ def test_sagittal_programme_is_the_one_of_ipopt(
 ) -> None:
     parameters = replace(parameters, objective=np.array([0.4, 0.8]))
     programme = sagittal_programme(
-        sagittal_assembler(sagittal, grid), grid, parameters, bounds(grid, 7.0)
+        sagittal_assembler(sagittal, grid), grid, parameters.pack(), bounds(grid, 7.0)
     )
     functions = {function.name(): function for function in programme_functions(grid)}
     rng = np.random.default_rng(3)
@@ -152,7 +152,7 @@ def test_derivatives_against_finite_differences(
 ) -> None:
     grid = GRIDS[0]
     programme = sagittal_programme(
-        sagittal_assembler(sagittal, grid), grid, parameters, bounds(grid, 7.0)
+        sagittal_assembler(sagittal, grid), grid, parameters.pack(), bounds(grid, 7.0)
     )
     rng = np.random.default_rng(8)
     x = np.append(rng.uniform(0.1, 0.7, grid.n_angles), 7.0)

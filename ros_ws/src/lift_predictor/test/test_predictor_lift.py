@@ -18,7 +18,9 @@ from lift_predictor.core.predictor import LiftPredictor, PredictorOptions
 from lift_predictor.core.sagittal.parameters import JOINTS
 from lift_predictor.core.sagittal.task import Box, build_task
 from lift_predictor.core.sagittal.verify import TOLERANCE
-from lift_predictor.core.solvers.ipopt import LiftSolver, Start
+from lift_predictor.core.solvers.compiled import build_programme
+from lift_predictor.core.solvers.ipopt import LiftSolver
+from lift_predictor.core.solvers.optimum import Start
 
 MASSES = (0.0, 7.0, 12.0)
 
@@ -52,7 +54,7 @@ def test_random_starts_find_nothing_better(outcome, predictor, person, mass) -> 
     result = outcome(mass)
     task = build_task(person, result.lift, result.box)
     rng = np.random.default_rng(7)
-    solver = LiftSolver(predictor.programme, time_limit=20.0)
+    solver = LiftSolver(build_programme(predictor.programme.grid), time_limit=20.0)
     low, high = person.angle_lower, person.angle_upper
     shape = (predictor.programme.grid.spline.n_free, 6)
     vector = task.parameters.pack()

@@ -25,7 +25,9 @@ from lift_predictor.core.maximum_weight import (
 )
 from lift_predictor.core.sagittal.starts import make_starts
 from lift_predictor.core.sagittal.task import Box, build_task
-from lift_predictor.core.solvers.ipopt import LiftSolver, Start
+from lift_predictor.core.solvers.compiled import build_programme
+from lift_predictor.core.solvers.ipopt import LiftSolver
+from lift_predictor.core.solvers.optimum import Start
 
 DEPTH = 0.238
 BOX = Box(7.0, DEPTH)
@@ -83,7 +85,7 @@ def test_a_little_less_can_be_lifted_and_a_little_more_cannot(
     task, starts = open_task
     # Before margins between the nodes were asked for: the bounds of these solves have none.
     heaviest = solve(0.0).prediction.optima[-len(starts)]
-    solver = LiftSolver(predictor.programme, 20.0)
+    solver = LiftSolver(build_programme(predictor.programme.grid), 20.0)
     start = heaviest.as_start()
     found = []
     for factor in (0.99, 1.01):
@@ -124,7 +126,8 @@ def test_objective_is_equation_2_11(solve) -> None:
 def test_the_tie_break_costs_next_to_nothing(predictor, open_task, solve) -> None:
     task, starts = open_task
     vector = replace(task.parameters, objective=np.array([0.0, 1.0])).pack()
-    pure = LiftSolver(predictor.programme, 20.0).solve_all(vector, task.bounds, starts)[0]
+    referee = LiftSolver(build_programme(predictor.programme.grid), 20.0)
+    pure = referee.solve_all(vector, task.bounds, starts)[0]
     assert pure.converged
     first = solve(0.0).prediction.optima[-len(starts)]
     assert TIE_BREAK > 0.0
@@ -138,7 +141,7 @@ def test_random_starts_find_no_heavier_box(predictor, open_task, solve) -> None:
     rng = np.random.default_rng(3)
     shape = (predictor.programme.grid.spline.n_free, 6)
     vector = replace(task.parameters, objective=np.array([TIE_BREAK, 1.0])).pack()
-    solver = LiftSolver(predictor.programme, 20.0)
+    solver = LiftSolver(build_programme(predictor.programme.grid), 20.0)
     masses = []
     for k in range(5):
         control = rng.uniform(person.angle_lower, person.angle_upper, shape)

@@ -20,9 +20,12 @@ from lift_predictor.core.sagittal.kinematics import chain_positions, pelvis_moti
 from lift_predictor.core.sagittal.node_functions import node_functions
 from lift_predictor.core.sagittal.parameters import JOINTS, LiftParameters
 from lift_predictor.core.sagittal.person import Person
+from lift_predictor.core.sagittal.programme import sagittal_library
+from lift_predictor.core.sagittal.report_function import ReportFunction
 
 N = 12
 FUNCTIONS = node_functions()
+REPORT = ReportFunction(sagittal_library())
 
 
 @pytest.fixture(scope='module')
@@ -34,7 +37,7 @@ def motion() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 @pytest.fixture(scope='module')
 def loads(parameters: LiftParameters, motion) -> SagittalLoads:
-    return evaluate(FUNCTIONS['report'], *motion, parameters)
+    return evaluate(REPORT, *motion, parameters)
 
 
 def full_motion(person: Person, parameters: LiftParameters, motion) -> list[np.ndarray]:
@@ -86,7 +89,7 @@ def test_joint_centres_agree_with_the_skeleton(
 def test_power_balance(parameters: LiftParameters, motion) -> None:
     """Power of the joint torques = rate of kinetic and potential energy of body and box."""
     q, dq, ddq = (block[:1] for block in motion)
-    torque = evaluate(FUNCTIONS['report'], q, dq, ddq, parameters).torque[0]
+    torque = evaluate(REPORT, q, dq, ddq, parameters).torque[0]
 
     def energy(t: float) -> float:
         def centres(at: float) -> np.ndarray:
@@ -120,7 +123,7 @@ def mass_centres(q: np.ndarray, parameters: LiftParameters) -> np.ndarray:
 
 def test_standing_still_puts_the_zmp_under_the_centre_of_mass(parameters: LiftParameters) -> None:
     posture, rest = np.radians([[-20.0, 30.0, 20.0, 30.0, 30.0, 10.0]]), np.zeros((1, 6))
-    loads = evaluate(FUNCTIONS['report'], posture, rest, rest, parameters)
+    loads = evaluate(REPORT, posture, rest, rest, parameters)
     weight = parameters.total_mass * parameters.gravity
     np.testing.assert_allclose(loads.ground_force[0], [0.0, weight], atol=1e-9)
     expected = chain_positions(posture, parameters).centre_of_mass[0]
@@ -131,7 +134,7 @@ def test_held_box_pulls_at_the_hands(parameters: LiftParameters) -> None:
     """Hand computation: arms straight forward, still: the elbow carries forearm and box."""
     posture = np.array([[0.0, np.pi / 2, 0.0, 0.0, 0.0, 0.0]])
     rest = np.zeros((1, 6))
-    loads = evaluate(FUNCTIONS['report'], posture, rest, rest, parameters)
+    loads = evaluate(REPORT, posture, rest, rest, parameters)
     mass, com_down, reach = parameters.body[6, 0], -parameters.body[6, 2], -parameters.body[6, 5]
     forward = parameters.body[6, 1]
     # In this posture the forearm points forward: "down" of the segment is forward in the world.
@@ -168,7 +171,7 @@ def test_clearance_row_is_the_distance_of_box_and_circle(
 
 def test_circle_switched_off_does_not_constrain(parameters: LiftParameters, motion) -> None:
     off = replace(parameters, circle=np.zeros_like(parameters.circle))
-    rows = evaluate(FUNCTIONS['report'], *motion, off).rows
+    rows = evaluate(REPORT, *motion, off).rows
     np.testing.assert_array_equal(rows[:, 8:], 1.0)
     assert np.all(np.isinf(chain_positions(motion[0], off).gaps))
 
@@ -203,7 +206,7 @@ def test_published_link_table_can_be_used(motion) -> None:
         box_radius=0.1,
         box_from_hand=np.zeros(2),
     )
-    torque = evaluate(FUNCTIONS['report'], *motion, parameters).torque
+    torque = evaluate(REPORT, *motion, parameters).torque
     spine, hip = JOINTS.index('lumbar_extension'), JOINTS.index('hip_flexion')
     np.testing.assert_allclose(torque[:, spine], -torque[:, hip], rtol=1e-12)
 

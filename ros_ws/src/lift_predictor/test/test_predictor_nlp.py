@@ -13,10 +13,13 @@ from lift_predictor.core.sagittal.evaluation import evaluate, sample
 from lift_predictor.core.sagittal.grid import HAND_SCALE, NODE_ROWS, Grid, LiftBounds
 from lift_predictor.core.sagittal.nlp import programme_functions
 from lift_predictor.core.sagittal.parameters import LiftParameters
+from lift_predictor.core.sagittal.programme import sagittal_library
+from lift_predictor.core.sagittal.report_function import ReportFunction
 
 GRID = Grid(6, 7)
 MASS = np.array([7.0, 30.0])
 FUNCTIONS = {function.name(): function for function in programme_functions(GRID)}
+REPORT = ReportFunction(sagittal_library())
 
 
 @pytest.fixture(scope='module')
@@ -82,7 +85,7 @@ def test_rows_and_objective_are_those_of_the_model(
 ) -> None:
     control = point[: GRID.n_angles].reshape(GRID.spline.n_free, 6)
     q, dq, ddq = sample(GRID.spline, control, GRID.times, parameters.duration)
-    loads = evaluate(FUNCTIONS['report'], q, dq, ddq, parameters)
+    loads = evaluate(REPORT, q, dq, ddq, parameters)
     g = dense(FUNCTIONS['nlp_g'](point, vector))[:, 0]
     n_rows = GRID.n_nodes * len(NODE_ROWS)
     np.testing.assert_allclose(g[:n_rows], loads.rows.ravel(), atol=1e-12)

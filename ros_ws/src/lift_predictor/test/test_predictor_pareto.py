@@ -63,7 +63,7 @@ def test_no_case_is_better_than_another_in_both_criteria(solved, predictor) -> N
     for case, result in enumerate(curve.results):
         run = result.prediction.optima[-len(starts) if case == 0 else -1]
         parameters = replace(task.parameters, box_mass=run.box_mass)
-        report = programme.functions['report']
+        report = programme.report
         effort[case] = total_effort(report, programme.grid, run.control, parameters)
         weight[case] = run.box_mass * task.parameters.gravity
     assert np.all(np.diff(effort) <= 1e-6)

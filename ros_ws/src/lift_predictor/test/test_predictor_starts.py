@@ -78,7 +78,7 @@ def test_samples_cover_the_lift_at_100_per_second() -> None:
 
 def test_toes_carry_only_what_acts_before_them(task, predictor) -> None:
     """Hand computation: standing still, leaning until the ZMP is ahead of the ball of the foot."""
-    report, rest = predictor.programme.functions['report'], np.zeros((2, 6))
+    report, rest = predictor.programme.report, np.zeros((2, 6))
     q = np.zeros((2, 6))
     q[1, 5] = 0.22
     loads = evaluate(report, q, rest, rest, task.parameters)

@@ -21,7 +21,7 @@ def solved(outcome, predictor, person):
 
     def check(control=control, parameters=task.parameters, bounds=task.bounds):
         programme = predictor.programme
-        return verify(programme.functions['report'], programme.grid, control, parameters, bounds)
+        return verify(programme.report, programme.grid, control, parameters, bounds)
 
     return check, control, task
 

@@ -23,7 +23,7 @@ from lift_predictor.core.sagittal.grid import WEIGHT_OFFSET
 from lift_predictor.core.sagittal.prediction import PredictedLift2D
 from lift_predictor.core.sagittal.starts import make_starts
 from lift_predictor.core.sagittal.task import Box, LiftTask2D, build_task
-from lift_predictor.core.solvers.ipopt import Progress, Start
+from lift_predictor.core.solvers.optimum import Progress, Start
 
 POSTURE_TOLERANCES: Final = (0.1, 0.15, 0.1)
 """Epsilon of equation 2.23 at 0, T/2 and T [rad]."""
@@ -273,7 +273,7 @@ def _result(
     programme = predictor.programme
     parameters = replace(task.parameters, box_mass=best.box_mass)
     effort = total_effort(
-        programme.functions['report'], programme.grid, best.control, parameters
+        programme.report, programme.grid, best.control, parameters
     )
     own = Normalisation(effort, abs(math.log(weight + WEIGHT_OFFSET)), best.box_mass)
     return MaximumWeight(

@@ -25,7 +25,7 @@ from lift_predictor.core.maximum_weight import (
 )
 from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.sagittal.task import LiftTask2D
-from lift_predictor.core.solvers.ipopt import Start
+from lift_predictor.core.solvers.optimum import Start
 
 Array = NDArray[np.float64]
 

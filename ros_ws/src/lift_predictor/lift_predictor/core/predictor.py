@@ -17,7 +17,7 @@ from human_model.errors import HumanModelError
 from human_model.motion import Lift
 from human_model.report import SolveReport, SolveStatus
 from human_model.subject import Subject
-from lift_predictor.core.exceptions import TaskError, UnreachableError
+from lift_predictor.core.exceptions import AsymmetricLiftError, TaskError, UnreachableError
 from lift_predictor.core.sagittal.comparison import LiftComparison, compare
 from lift_predictor.core.sagittal.evaluation import evaluate, sample, total_effort
 from lift_predictor.core.sagittal.feasibility import (
@@ -30,21 +30,26 @@ from lift_predictor.core.sagittal.feasibility import (
 )
 from lift_predictor.core.sagittal.grid import Grid
 from lift_predictor.core.sagittal.lift_motion import body_motion, mtp_torque, sample_times
+from lift_predictor.core.sagittal.optimiser import LiftOptimiser
 from lift_predictor.core.sagittal.person import COEFFICIENT_SET, Person
 from lift_predictor.core.sagittal.prediction import TORQUE_NAMES, NearestLift, PredictedLift2D
 from lift_predictor.core.sagittal.starts import make_starts
 from lift_predictor.core.sagittal.task import POSTURE_TOLERANCE, Box, LiftTask2D, build_task
 from lift_predictor.core.sagittal.verify import Verification, verify
-from lift_predictor.core.solvers.compiled import Programme, build_programme
-from lift_predictor.core.solvers.ipopt import LiftSolver, Optimum, Progress, Start
+from lift_predictor.core.solvers.optimum import Optimum, Progress, Start
+from lift_predictor.core.solvers.solution import Status
+from lift_predictor.core.spatial.comparison import SpatialComparison
+from lift_predictor.core.spatial.prediction import PredictedLift3D
+from lift_predictor.core.spatial.predictor import SpatialOptions, SpatialPredictor
 
 Array = NDArray[np.float64]
 
-TIMED_OUT: Final = 'Maximum_WallTime_Exceeded'
+TIMED_OUT: Final = (Status.TIME_LIMIT, 'Maximum_WallTime_Exceeded')
+INFEASIBLE: Final = (Status.INFEASIBLE, 'Infeasible_Problem_Detected')
+"""In our solver's words and in IPOPT's."""
+
 MARGIN_FACTOR: Final = 1.05
 """Margin against a violation between the nodes, in units of the violation."""
-
-INFEASIBLE: Final = 'Infeasible_Problem_Detected'
 
 
 @dataclass(frozen=True)
@@ -62,9 +67,12 @@ class PredictorOptions:
     coefficient_set : str
         Published strength data, a name of `human_model.strength.coefficient_sets`.
     time_limit : float
-        Wall time of one IPOPT run at most, and time after which none is begun any more [s].
+        Wall time of one run at most, and time after which none is begun any more [s]: a last
+        resort, as runs are limited by their iterations.
     refinements : int
         How often the lift is solved again with a margin when the dense grid shows a violation.
+    dimension : str
+        '2d', '3d', or 'auto': asymmetric lifts on the 3D skeleton are predicted in space.
     """
 
     n_control: int = 7
@@ -73,6 +81,18 @@ class PredictorOptions:
     coefficient_set: str = COEFFICIENT_SET
     time_limit: float = 10.0
     refinements: int = 3
+    dimension: str = 'auto'
+
+    @property
+    def spatial(self) -> SpatialOptions:
+        """The same settings for lifts in space, where the recorded postures have 3.15's windows."""
+        return SpatialOptions(
+            n_control=self.n_control,
+            n_nodes=self.n_nodes,
+            coefficient_set=self.coefficient_set,
+            time_limit=max(self.time_limit, SpatialOptions.time_limit),
+            refinements=self.refinements,
+        )
 
 
 class LiftPredictor:
@@ -92,10 +112,11 @@ class LiftPredictor:
     def __init__(self, options: PredictorOptions | None = None) -> None:
         self.options = options or PredictorOptions()
         self.person: Person | None = None
-        self.programme: Programme = build_programme(
-            Grid(self.options.n_control, self.options.n_nodes)
+        self._subject: Subject | None = None
+        self._spatial: SpatialPredictor | None = None
+        self.programme = LiftOptimiser(
+            Grid(self.options.n_control, self.options.n_nodes), self.options.time_limit
         )
-        self._solver = LiftSolver(self.programme, self.options.time_limit)
 
     def configure(self, subject: Subject, segments: SegmentParameters | None = None) -> None:
         """Set the subject, and the segments of the skeleton if they are not to be estimated.
@@ -109,8 +130,9 @@ class LiftPredictor:
             self.person = Person.of(subject, self.options.coefficient_set, segments)
         except HumanModelError as error:
             raise TaskError(str(error)) from error
+        self._subject = subject
 
-    def predict(self, lift: Lift, box: Box) -> PredictedLift2D:
+    def predict(self, lift: Lift, box: Box) -> PredictedLift2D | PredictedLift3D:
         """Solve the task of one recorded lift.
 
         Parameters
@@ -122,7 +144,7 @@ class LiftPredictor:
 
         Returns
         -------
-        PredictedLift2D
+        PredictedLift2D or PredictedLift3D
             Its report says whether there is a solution; without one there are no data.
 
         Raises
@@ -134,17 +156,32 @@ class LiftPredictor:
 
     def predict_and_compare(
         self, lift: Lift, box: Box, progress: Progress | None = None
-    ) -> tuple[PredictedLift2D, LiftComparison | None]:
+    ) -> tuple[PredictedLift2D | PredictedLift3D, LiftComparison | SpatialComparison | None]:
         """Solve the task of one recorded lift; compare if there is a solution.
 
         Parameters are those of `predict`; `progress` is told after each start.
         """
         if self.person is None:
             raise TaskError('subject: none was configured before the first lift')
-        failed, comparison = self._attempt(lift, box, progress)
+        if self.options.dimension == '3d':
+            return self.spatial().predict_and_compare(lift, box, progress)
+        try:
+            failed, comparison = self._attempt(lift, box, progress)
+        except AsymmetricLiftError:
+            return self.spatial().predict_and_compare(lift, box, progress)
         if failed.report.status not in HOPELESS:
             return failed, comparison
         return self._explained(failed, lift, box), None
+
+    def spatial(self) -> SpatialPredictor:
+        """Predictor of lifts in space for the same subject; its functions load when first used."""
+        if self._subject is None:
+            raise TaskError('subject: none was configured before the first lift')
+        if self._spatial is None:
+            self._spatial = SpatialPredictor(self.options.spatial)
+        if self._spatial.subject is not self._subject:
+            self._spatial.configure(self._subject)
+        return self._spatial
 
     def _attempt(
         self, lift: Lift, box: Box, progress: Progress | None = None, share: float = 1.0
@@ -156,6 +193,9 @@ class LiftPredictor:
             _require_good(lift)
             task = self._task(lift, box, share)
         except (TaskError, UnreachableError, HumanModelError) as error:
+            in_space = self.options.dimension == 'auto' and lift.motion.skeleton == '3d_40dof'
+            if in_space and isinstance(error, AsymmetricLiftError):
+                raise
             status = (
                 SolveStatus.PREDICTOR_UNREACHABLE
                 if isinstance(error, UnreachableError)
@@ -238,7 +278,7 @@ class LiftPredictor:
         build_time = time.perf_counter() - begin
         deadline = begin + self.options.time_limit
         vector = task.parameters.pack()
-        optima = self._solver.solve_all(vector, task.bounds, starts, deadline, progress)
+        optima = self.programme.solve_all(vector, task.bounds, starts, deadline, progress)
         optima, check = self._tighten(task, vector, optima, deadline)
         status, message = _judge(optima[0], check)
         notes = (*task.notes, self.programme.how)
@@ -264,7 +304,7 @@ class LiftPredictor:
         self, task: LiftTask2D, vector: Array, optima: tuple[Optimum, ...], deadline: float
     ) -> tuple[tuple[Optimum, ...], Verification | None]:
         """Check the best run between the nodes; solve again with a margin where it fails."""
-        bounds, report = task.bounds, self.programme.functions['report']
+        bounds, report = task.bounds, self.programme.report
         check: Verification | None = None
         for attempt in range(self.options.refinements + 1):
             best = optima[0]
@@ -277,7 +317,7 @@ class LiftPredictor:
                 break
             margin = 0.0 if bounds.margin is None else bounds.margin
             bounds = replace(bounds, margin=margin + MARGIN_FACTOR * check.excess)
-            again = self._solver.solve(vector, bounds, best.as_start())
+            again = self.programme.solve(vector, bounds, best.as_start())
             if not again.converged:
                 optima = (best, again, *optima[1:])
                 break
@@ -293,7 +333,7 @@ class LiftPredictor:
         notes: tuple[str, ...],
     ) -> tuple[PredictedLift2D, LiftComparison | None]:
         parameters = replace(task.parameters, box_mass=optima[0].box_mass)
-        function = self.programme.functions['report']
+        function = self.programme.report
         times = sample_times(parameters.duration)
         s = times / parameters.duration
         q, dq, ddq = sample(self.programme.grid.spline, optima[0].control, s, parameters.duration)
@@ -347,8 +387,8 @@ def _judge(best: Optimum, check: Verification | None) -> tuple[SolveStatus, str]
             f'between the nodes constraints are violated: {check.failures()}',
         )
     detail = f'largest violation: {best.violated or "none"} ({best.violation:.3g})'
-    if best.outcome == TIMED_OUT:
+    if best.outcome in TIMED_OUT:
         return SolveStatus.PREDICTOR_TIME_LIMIT, f'time limit reached; {detail}'
-    if best.outcome == INFEASIBLE:
+    if best.outcome in INFEASIBLE:
         return SolveStatus.PREDICTOR_INFEASIBLE, f'no feasible motion was found; {detail}'
-    return SolveStatus.PREDICTOR_NOT_CONVERGED, f'IPOPT: {best.outcome}; {detail}'
+    return SolveStatus.PREDICTOR_NOT_CONVERGED, f'not solved: {best.outcome}; {detail}'

@@ -21,7 +21,7 @@ from lift_predictor.core.sagittal.person import Person
 from lift_predictor.core.sagittal.plane import SagittalPlane
 from lift_predictor.core.sagittal.starts import make_starts
 from lift_predictor.core.sagittal.task import POSTURE_TOLERANCE, LiftTask2D
-from lift_predictor.core.solvers.ipopt import Start
+from lift_predictor.core.solvers.optimum import Start
 
 Array = NDArray[np.float64]
 

@@ -18,7 +18,7 @@ from lift_predictor.core.planning.technique import stoop_squat_index, technique
 from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.sagittal.prediction import PredictedLift2D
 from lift_predictor.core.sagittal.task import POSTURE_TOLERANCE
-from lift_predictor.core.solvers.ipopt import Start
+from lift_predictor.core.solvers.optimum import Start
 
 WINDOW_HALVINGS: Final = 4
 """How often the posture window is halved where the optimum leaves the technique's range; the

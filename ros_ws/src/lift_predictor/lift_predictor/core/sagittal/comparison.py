@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from lift_predictor.core.exceptions import TaskError
 from lift_predictor.core.sagittal.evaluation import SagittalLoads, evaluate
 from lift_predictor.core.sagittal.parameters import JOINTS
+from lift_predictor.core.sagittal.report_function import ReportFunction
 from lift_predictor.core.sagittal.task import LiftTask2D
 
 Array = NDArray[np.float64]
@@ -57,7 +58,7 @@ class LiftComparison:
 
 
 def compare(
-    report: Any,
+    report: ReportFunction,
     task: LiftTask2D,
     predicted_time: Array,
     predicted_q: Array,
@@ -68,8 +69,8 @@ def compare(
 
     Parameters
     ----------
-    report : casadi.Function
-        `Programme.functions['report']`.
+    report : ReportFunction
+        `LiftOptimiser.report`.
     task : LiftTask2D
         Holds the recorded lift.
     predicted_time : array, shape (m,)

@@ -5,14 +5,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lift_predictor.core.bspline import RestToRestSpline, simpson_weights
-from lift_predictor.core.sagittal.grid import CENTRES, REPORT_OUTPUTS, Grid
+from lift_predictor.core.sagittal.grid import CENTRES, Grid
 from lift_predictor.core.sagittal.parameters import LiftParameters
+from lift_predictor.core.sagittal.report_function import ReportFunction
 
 Array = NDArray[np.float64]
 
@@ -51,25 +51,21 @@ class SagittalLoads:
 
 
 def evaluate(
-    report: Any, q: Array, dq: Array, ddq: Array, parameters: LiftParameters
+    report: ReportFunction, q: Array, dq: Array, ddq: Array, parameters: LiftParameters
 ) -> SagittalLoads:
     """Run the model over n instants.
 
     Parameters
     ----------
-    report : casadi.Function
-        `Programme.functions['report']`.
+    report : ReportFunction
+        `LiftOptimiser.report`.
     q, dq, ddq : array, shape (n, 6)
         Joint coordinates [rad], [rad/s], [rad/s^2].
     parameters : LiftParameters
         Person, task and the mass in the hands.
     """
     n = len(q)
-    outputs = report.map(n)(q.T, dq.T, ddq.T, parameters.box_mass, parameters.pack())
-    values = {
-        name: np.asarray(output).reshape(-1, n).T
-        for name, output in zip(REPORT_OUTPUTS, outputs, strict=True)
-    }
+    values = report(q, dq, ddq, parameters.box_mass, parameters.pack())
     ground_force = values['ground_force']
     return SagittalLoads(
         torque=values['torque'],
@@ -84,13 +80,15 @@ def evaluate(
     )
 
 
-def total_effort(report: Any, grid: Grid, control: Array, parameters: LiftParameters) -> float:
+def total_effort(
+    report: ReportFunction, grid: Grid, control: Array, parameters: LiftParameters
+) -> float:
     """Return the first term of equation 2.11 [s] as the programme integrates it.
 
     Parameters
     ----------
-    report : casadi.Function
-        `Programme.functions['report']`.
+    report : ReportFunction
+        `LiftOptimiser.report`.
     grid : Grid
         Of the solution.
     control : array, shape (n_free, 6)

@@ -14,7 +14,7 @@ from human_model.motion import Lift
 from human_model.report import SolveReport
 from lift_predictor.core.sagittal.parameters import JOINTS
 from lift_predictor.core.sagittal.verify import Verification
-from lift_predictor.core.solvers.ipopt import Optimum
+from lift_predictor.core.solvers.optimum import Optimum
 
 Array = NDArray[np.float64]
 

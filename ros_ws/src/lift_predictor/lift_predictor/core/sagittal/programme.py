@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from lift_predictor.core.bspline import simpson_weights
 from lift_predictor.core.sagittal.grid import NODE_ROWS, Grid, LiftBounds
-from lift_predictor.core.sagittal.parameters import JOINTS, N_JOINTS, N_SCALARS, LiftParameters
+from lift_predictor.core.sagittal.parameters import JOINTS, N_JOINTS, N_SCALARS
 from lift_predictor.core.solvers.layout import Channel, Group
 from lift_predictor.core.solvers.library import NodeLibrary, load_library
 from lift_predictor.core.solvers.spline_programme import Assembler, SplineProgramme, make_assembler
@@ -62,7 +62,7 @@ def sagittal_assembler(library: NodeLibrary, grid: Grid) -> Assembler:
 
 
 def sagittal_programme(
-    assembler: Assembler, grid: Grid, parameters: LiftParameters, bounds: LiftBounds
+    assembler: Assembler, grid: Grid, parameters: Array, bounds: LiftBounds
 ) -> SplineProgramme:
     """Programme of one person and task.
 
@@ -72,14 +72,14 @@ def sagittal_programme(
         Of the grid.
     grid : Grid
         Sizes.
-    parameters : LiftParameters
-        Person and task.
+    parameters : array
+        Person and task, as `LiftParameters.pack`.
     bounds : LiftBounds
         Demands of the task.
     """
     return SplineProgramme(
         assembler,
-        parameters.pack(),
+        parameters,
         bounds.variables(grid),
         bounds.rows(grid),
         lambda index: grid.row_names[index],

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from lift_predictor.core.sagittal.evaluation import evaluate, sample
 from lift_predictor.core.sagittal.grid import NODE_UPPER, Grid, LiftBounds
 from lift_predictor.core.sagittal.kinematics import chain_positions
 from lift_predictor.core.sagittal.parameters import JOINTS, LiftParameters
+from lift_predictor.core.sagittal.report_function import ReportFunction
 
 Array = NDArray[np.float64]
 
@@ -70,14 +71,18 @@ class Verification:
 
 
 def verify(
-    report: Any, grid: Grid, control: Array, parameters: LiftParameters, bounds: LiftBounds
+    report: ReportFunction,
+    grid: Grid,
+    control: Array,
+    parameters: LiftParameters,
+    bounds: LiftBounds,
 ) -> Verification:
     """Evaluate all constraints on `DENSITY` times as many points as the grid has node intervals.
 
     Parameters
     ----------
-    report : casadi.Function
-        `Programme.functions['report']`.
+    report : ReportFunction
+        `LiftOptimiser.report`.
     grid : Grid
         Of the solution.
     control : array, shape (n_free, 6)

@@ -33,7 +33,7 @@ KAPPA_D = 1e-5
 LARGEST_FIRST_MULTIPLIER = 1e3
 MAX_RESTORATIONS = 8
 SHORT_STEP, SHORT_STEPS = 0.1, 12
-"""So many steps in a row that the bounds cut to this length or less: the restoration takes over."""
+"""So many steps in a row that bounds cut to this length or less: the restoration takes over."""
 TINY = 10.0 * float(np.finfo(float).eps)
 ACCEPTABLE_FACTOR = 100.0
 """Without further progress, an error of this many tolerances is rounding, not failure."""

@@ -1,12 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""IPOPT with exact derivatives on the lift programme, from several starts, the best kept."""
+"""IPOPT with exact derivatives on the lift programme: referee and fallback of our own solver."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from typing import Any, Final
 
 import casadi as ca
@@ -14,84 +13,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lift_predictor.core.sagittal.grid import LiftBounds
-from lift_predictor.core.sagittal.parameters import JOINTS
+from lift_predictor.core.sagittal.programme import variable_name
 from lift_predictor.core.solvers.compiled import Programme
+from lift_predictor.core.solvers.optimum import (
+    BINDING,
+    FEASIBLE,
+    Optimum,
+    Progress,
+    Start,
+    best_first,
+    best_objective,
+)
 
 Array = NDArray[np.float64]
 
 TOLERANCE: Final = 1e-8
 """IPOPT's default relative tolerance."""
-FEASIBLE: Final = 1e-5
-"""Largest violation of a scaled constraint row that counts as met."""
-BINDING: Final = 1e-5
-"""Smallest multiplier of a limit that counts as binding: far above what the barrier leaves."""
-
-
-Progress = Callable[[int, int, float], None]
-"""Told after each run: starts tried, starts in all, best objective so far (NaN: none yet)."""
-
-
-@dataclass(frozen=True)
-class Start:
-    """Named initial guess: free control values, shape (n_free, 6) [rad], and box mass [kg].
-
-    The mass is moved into its bounds, and so needs no value where the weight is given.
-    """
-
-    name: str
-    control: Array
-    box_mass: float = 0.0
-
-
-@dataclass(frozen=True)
-class Optimum:
-    """Where one IPOPT run ended.
-
-    Attributes
-    ----------
-    start : str
-        Name of the start.
-    converged : bool
-        Whether IPOPT reports a solution and its constraints hold to `FEASIBLE`.
-    outcome : str
-        IPOPT's own words.
-    control : array, shape (n_free, 6)
-        Free control values [rad].
-    box_mass : float
-        [kg].
-    objective : float
-        a effort [s] - b log(W + 10); the effort where the weight is given.
-    iterations : int
-        Iterations.
-    violation : float
-        Largest violation of a bound or scaled row.
-    violated : str
-        Name of that row; empty when nothing is violated.
-    binding : tuple of (str, float)
-        Limits that hold the objective back, with their multipliers, the strongest first.
-    stationarity, complementarity : float
-        Largest element of the Lagrangian's gradient, and of multiplier times slack.
-    solve_time : float
-        Wall time [s].
-    """
-
-    start: str
-    converged: bool
-    outcome: str
-    control: Array
-    box_mass: float
-    objective: float
-    iterations: int
-    violation: float
-    violated: str
-    binding: tuple[tuple[str, float], ...]
-    stationarity: float
-    complementarity: float
-    solve_time: float
-
-    def as_start(self) -> Start:
-        """Use the end of this run as a start."""
-        return Start(self.start, self.control, self.box_mass)
 
 
 class LiftSolver:
@@ -206,13 +143,8 @@ class LiftSolver:
             if not runs or time.perf_counter() < deadline:
                 runs.append(self.solve(parameters, bounds, start))
                 if progress is not None:
-                    solved = [run.objective for run in runs if run.converged]
-                    progress(len(runs), len(starts), min(solved, default=float('nan')))
-        return tuple(
-            sorted(
-                runs, key=lambda r: (not r.converged, r.objective if r.converged else r.violation)
-            )
-        )
+                    progress(len(runs), len(starts), best_objective(runs))
+        return best_first(runs)
 
     def _binding(
         self, multipliers: Array, low: Array, high: Array
@@ -226,10 +158,7 @@ class LiftSolver:
         n = self.programme.grid.n_variables
         if index >= n:
             return self.programme.grid.row_names[index - n]
-        if index == n - 1:
-            return 'mass of the box'
-        end = 'start' if index < len(JOINTS) else 'end'
-        return f'posture (4.8) of {JOINTS[index % len(JOINTS)]} at the {end}'
+        return variable_name(self.programme.grid, index)
 
 
 def _largest_violation(values: Array, low: Array, high: Array) -> tuple[float, int]:

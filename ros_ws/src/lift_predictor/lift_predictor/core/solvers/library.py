@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from lift_predictor.core.solvers.node_function import NodeFunction
 
 FLAGS: Final = (
-    '-O2', '-march=native', '-fno-math-errno', '-fno-trapping-math', '-fPIC', '-shared',
+    '-O3', '-march=native', '-fno-math-errno', '-fno-trapping-math', '-fPIC', '-shared',
 )  # fmt: skip
 VECTOR_LIBM: Final = ('-DVECTOR_LIBM', '-lmvec')
 """Sine, exponential and so on of glibc's vector library, where there is one."""

@@ -12,7 +12,8 @@ from lift_predictor.core.solvers.programme import Linearisation, Programme
 Array = NDArray[np.float64]
 
 BOUND_RELAXATION = 1e-8
-"""Bounds are relaxed by this, relative to their size, as in IPOPT: there is always an inside."""
+"""Bounds of rows are relaxed by this, relative to their size, as IPOPT does with all bounds: there
+is always an inside. Those of variables are kept, so that a solution can be used as it is."""
 
 
 class ScaledPoint:
@@ -87,10 +88,10 @@ class ScaledProgramme:
         self.n, self.m = len(self.free), len(equal)
         row_lower = (self.row_scale * source.row_lower)[self.unequal]
         row_upper = (self.row_scale * source.row_upper)[self.unequal]
-        lower = np.concatenate((source.lower[self.free], row_lower))
-        upper = np.concatenate((source.upper[self.free], row_upper))
-        self.lower = lower - BOUND_RELAXATION * np.maximum(1.0, np.abs(lower))
-        self.upper = upper + BOUND_RELAXATION * np.maximum(1.0, np.abs(upper))
+        row_lower = row_lower - BOUND_RELAXATION * np.maximum(1.0, np.abs(row_lower))
+        row_upper = row_upper + BOUND_RELAXATION * np.maximum(1.0, np.abs(row_upper))
+        self.lower = np.concatenate((source.lower[self.free], row_lower))
+        self.upper = np.concatenate((source.upper[self.free], row_upper))
         self.target = (self.row_scale * source.row_lower)[self.equal]
 
     def full(self, x: Array) -> Array:

@@ -40,6 +40,10 @@ struct solver {
     double convexify;
 };
 
+// As fmax and fmin, but without a call; a second argument that is not a number is taken.
+static inline double larger(double a, double b) { return a > b ? a : b; }
+static inline double smaller(double a, double b) { return a < b ? a : b; }
+
 static double now(void) {
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
@@ -219,10 +223,10 @@ static struct errors measure(struct solver *s) {
 
 static double scaled_error(const struct solver *s, const struct errors *e, double mu) {
     double complementarity =
-        e->bounds ? fmax(e->high_product - mu, mu - e->low_product) : 0.0;
+        e->bounds ? larger(e->high_product - mu, mu - e->low_product) : 0.0;
     int count = s->m + e->bounds;
-    double s_d = fmax(100.0, (e->sum_y + e->sum_z) / (count ? count : 1));
-    double s_c = fmax(100.0, e->sum_z / (e->bounds ? e->bounds : 1));
+    double s_d = larger(100.0, (e->sum_y + e->sum_z) / (count ? count : 1));
+    double s_c = larger(100.0, e->sum_z / (e->bounds ? e->bounds : 1));
     double most = e->primal;
     double dual = 100.0 * e->dual / s_d, product = 100.0 * complementarity / s_c;
     if (!(dual <= most)) most = dual;
@@ -253,7 +257,7 @@ static int judge(const struct solver *s, double theta, double phi, double trial_
                  double trial_phi, double slope, double step, int *enter) {
     *enter = 0;
     if (!filter_accepts(s, trial_theta, trial_phi)) return 0;
-    double rounding = 1e-14 * fmax(1.0, fabs(phi));
+    double rounding = 1e-14 * larger(1.0, fabs(phi));
     int switching = slope < 0.0 && step * pow(-slope, 2.3) > pow(theta, 1.1);
     int armijo = trial_phi <= phi + 1e-8 * step * slope + rounding;
     if (theta <= s->theta_small && switching) return armijo;
@@ -265,8 +269,8 @@ static int judge(const struct solver *s, double theta, double phi, double trial_
 static double least_step(const struct solver *s, double theta, double slope) {
     double bound = 1e-5;
     if (slope < 0.0) {
-        bound = fmin(bound, 1e-8 * theta / -slope);
-        if (theta <= s->theta_small) bound = fmin(bound, pow(theta, 1.1) / pow(-slope, 2.3));
+        bound = smaller(bound, 1e-8 * theta / -slope);
+        if (theta <= s->theta_small) bound = smaller(bound, pow(theta, 1.1) / pow(-slope, 2.3));
     }
     return 0.05 * bound;
 }
@@ -276,11 +280,11 @@ static double least_step(const struct solver *s, double theta, double slope) {
 static double inside(double value, double low, double high, double push) {
     double width = isfinite(high - low) ? high - low : INFINITY;
     if (isfinite(low)) {
-        double least = low + fmin(push * fmax(1.0, fabs(low)), push * width);
+        double least = low + smaller(push * larger(1.0, fabs(low)), push * width);
         if (value < least) value = least;
     }
     if (isfinite(high)) {
-        double most = high - fmin(push * fmax(1.0, fabs(high)), push * width);
+        double most = high - smaller(push * larger(1.0, fabs(high)), push * width);
         if (value > most) value = most;
     }
     return value;
@@ -296,8 +300,8 @@ static void slacks_from_rows(struct solver *s, double push) {
 static void first_multipliers(struct solver *s) {
     memset(s->y, 0, s->m * sizeof(double));
     for (int i = 0; i < s->n_v; i++) {
-        s->zl[i] = fmin(s->mu / (s->v[i] - s->low[i]), 1e3);
-        s->zu[i] = fmin(s->mu / (s->high[i] - s->v[i]), 1e3);
+        s->zl[i] = smaller(s->mu / (s->v[i] - s->low[i]), 1e3);
+        s->zu[i] = smaller(s->mu / (s->high[i] - s->v[i]), 1e3);
         if (i >= s->n) s->y[s->unequal[i - s->n]] = s->zu[i] - s->zl[i];
     }
 }
@@ -319,7 +323,7 @@ static int factorise(struct solver *s) {
     }
     if (!isfinite(trace)) return 0;
     squares = dot(s->equality, s->equality, s->n_equal * n);
-    s->convexify = squares > 0.0 ? 10.0 * fmax(trace / n, 1.0) * s->n_equal / squares : 0.0;
+    s->convexify = squares > 0.0 ? 10.0 * larger(trace / n, 1.0) * s->n_equal / squares : 0.0;
     if (s->convexify > 0.0)
         for (int k = 0; k < s->n_equal; k++) {
             const double *row = s->equality + (size_t)k * n;
@@ -330,7 +334,7 @@ static int factorise(struct solver *s) {
             }
         }
     if (!cholesky(s->matrix, 0.0, s->factor, n)) {
-        double shift = s->last_shift == 0.0 ? 1e-4 : fmax(1e-20, s->last_shift / 3.0);
+        double shift = s->last_shift == 0.0 ? 1e-4 : larger(1e-20, s->last_shift / 3.0);
         double growth = s->last_shift == 0.0 ? 100.0 : 8.0;
         while (!cholesky(s->matrix, shift, s->factor, n)) {
             shift *= growth;
@@ -347,7 +351,7 @@ static int factorise(struct solver *s) {
         for (int l = 0; l <= k; l++)
             s->eq_work[(size_t)k * q + l] =
                 dot(s->equality + (size_t)k * n, s->inner + (size_t)l * n, n);
-    for (int k = 0; k < q; k++) most = fmax(most, fabs(s->eq_work[(size_t)k * q + k]));
+    for (int k = 0; k < q; k++) most = larger(most, fabs(s->eq_work[(size_t)k * q + k]));
     double shift = 0.0;
     while (!cholesky(s->eq_work, shift, s->schur, q)) {
         shift = shift == 0.0 ? 1e-8 * most : 10.0 * shift;
@@ -396,15 +400,15 @@ static void newton_step(struct solver *s, const double *residual) {
     }
 }
 
-static double boundary(const struct solver *s) { return fmax(0.99, 1.0 - s->mu); }
+static double boundary(const struct solver *s) { return larger(0.99, 1.0 - s->mu); }
 
 static double longest_step(const struct solver *s) {
     double tau = boundary(s), most = tau;
     for (int i = 0; i < s->n_v; i++) {
         double low = -s->dv[i] / (s->v[i] - s->low[i]), high = s->dv[i] / (s->high[i] - s->v[i]);
-        most = fmax(most, fmax(low, high));
+        most = larger(most, larger(low, high));
     }
-    return fmin(1.0, tau / most);
+    return smaller(1.0, tau / most);
 }
 
 static void move(const struct solver *s, double alpha) {
@@ -414,17 +418,17 @@ static void move(const struct solver *s, double alpha) {
 static void take(struct solver *s, double alpha) {
     double tau = boundary(s), most = tau;
     for (int i = 0; i < s->n_v; i++) {
-        if (isfinite(s->low[i])) most = fmax(most, -s->dzl[i] / s->zl[i]);
-        if (isfinite(s->high[i])) most = fmax(most, -s->dzu[i] / s->zu[i]);
+        if (isfinite(s->low[i])) most = larger(most, -s->dzl[i] / s->zl[i]);
+        if (isfinite(s->high[i])) most = larger(most, -s->dzu[i] / s->zu[i]);
     }
-    double dual = fmin(1.0, tau / most);
+    double dual = smaller(1.0, tau / most);
     for (int i = 0; i < s->n_v; i++) {
         double low = s->trial_v[i] - s->low[i], high = s->high[i] - s->trial_v[i];
         s->v[i] = s->trial_v[i];
         s->zl[i] += dual * s->dzl[i];
         s->zu[i] += dual * s->dzu[i];
-        s->zl[i] = fmin(fmax(s->zl[i], s->mu / (1e10 * low)), 1e10 * s->mu / low);
-        s->zu[i] = fmin(fmax(s->zu[i], s->mu / (1e10 * high)), 1e10 * s->mu / high);
+        s->zl[i] = smaller(larger(s->zl[i], s->mu / (1e10 * low)), 1e10 * s->mu / low);
+        s->zu[i] = smaller(larger(s->zu[i], s->mu / (1e10 * high)), 1e10 * s->mu / high);
     }
     for (int r = 0; r < s->m; r++) s->y[r] += alpha * s->dy[r];
     linearise(s, s->v);
@@ -495,7 +499,7 @@ static double violation_of(const struct solver *s, const double *rows, double *o
     for (int k = 0; k < s->n_equal; k++) out[s->equal[k]] = rows[s->equal[k]] - s->target[k];
     for (int k = 0; k < s->n_slack; k++) {
         double value = rows[s->unequal[k]];
-        double nearest = fmin(fmax(value, s->low[s->n + k]), s->high[s->n + k]);
+        double nearest = smaller(larger(value, s->low[s->n + k]), s->high[s->n + k]);
         out[s->unequal[k]] = value - nearest;
     }
     for (int r = 0; r < s->m; r++) sum += out[r] * out[r];
@@ -517,9 +521,9 @@ static int restore(struct solver *s, double goal, int limit) {
         for (int i = 0; i < n; i++) {
             held[i] = (x[i] <= s->low[i] && gradient[i] > 0.0) ||
                       (x[i] >= s->high[i] && gradient[i] < 0.0);
-            if (!held[i]) steep = fmax(steep, fabs(gradient[i])), sum += fabs(gradient[i]);
+            if (!held[i]) steep = larger(steep, fabs(gradient[i])), sum += fabs(gradient[i]);
         }
-        if (steep <= 1e-8 * fmax(1.0, most) || sum <= 0.1 * value) return 1;
+        if (steep <= 1e-8 * larger(1.0, most) || sum <= 0.1 * value) return 1;
         s->iterations++;
         for (int r = 0; r < s->m; r++)
             s->row_work[r] = violation[r] != 0.0 ? s->row_scale[r] * s->row_scale[r] : 0.0;
@@ -531,7 +535,7 @@ static int restore(struct solver *s, double goal, int limit) {
                     s->matrix[(size_t)i * n + j] = s->matrix[(size_t)j * n + i] = 0.0;
                 s->matrix[(size_t)i * n + i] = 1.0;
             }
-            size = fmax(size, fabs(s->matrix[(size_t)i * n + i]));
+            size = larger(size, fabs(s->matrix[(size_t)i * n + i]));
         }
         double after = value;
         for (;; damping *= 10.0) {
@@ -540,7 +544,7 @@ static int restore(struct solver *s, double goal, int limit) {
             for (int i = 0; i < n; i++) s->free_work2[i] = held[i] ? 0.0 : -gradient[i];
             back_substitute(s->factor, s->free_work2, n);
             for (int i = 0; i < n; i++)
-                s->trial_v[i] = fmin(fmax(x[i] + s->free_work2[i], s->low[i]), s->high[i]);
+                s->trial_v[i] = smaller(larger(x[i] + s->free_work2[i], s->low[i]), s->high[i]);
             scaled_values(s, s->trial_v, s->trial_rows);
             after = violation_of(s, s->trial_rows, s->row_work2);
             if (after < value) break;
@@ -549,7 +553,7 @@ static int restore(struct solver *s, double goal, int limit) {
         memcpy(x, s->trial_v, n * sizeof(double));
         memcpy(violation, s->row_work2, s->m * sizeof(double));
         value = after;
-        damping = fmax(0.1 * damping, 1e-6);
+        damping = larger(0.1 * damping, 1e-6);
         if (stalled == 10) return 1;
     }
     return 0;
@@ -583,7 +587,7 @@ static int iterate(struct solver *s) {
         if (scaled_error(s, &e, 0.0) <= s->set.tolerance) return OPTIMAL;
         double least = 0.1 * s->set.tolerance;
         while (s->mu > least && scaled_error(s, &e, s->mu) <= 10.0 * s->mu) {
-            s->mu = fmax(least, fmin(0.2 * s->mu, pow(s->mu, 1.5)));
+            s->mu = larger(least, smaller(0.2 * s->mu, pow(s->mu, 1.5)));
             s->n_filter = 0;
         }
         if (s->iterations >= s->set.max_iterations) return ITERATION_LIMIT;
@@ -604,19 +608,19 @@ static void start(struct solver *s, const double *x0, const double *y, const dou
     int n = s->n;
     lift_first(s->p, s->fixed, s->rows, s->full2);
     double steep = 0.0;
-    for (int i = 0; i < n; i++) steep = fmax(steep, fabs(s->full2[s->free[i]]));
+    for (int i = 0; i < n; i++) steep = larger(steep, fabs(s->full2[s->free[i]]));
     s->objective_scale = steep > set->gradient_limit ? set->gradient_limit / steep : 1.0;
     lift_dense_rows(s->p, s->equal, s->n_equal, s->jacobian);
     for (int k = 0; k < s->n_equal; k++) {
         double most = set->gradient_limit;
         for (int i = 0; i < n; i++)
-            most = fmax(most, fabs(s->jacobian[(size_t)k * s->n_all + s->free[i]]));
+            most = larger(most, fabs(s->jacobian[(size_t)k * s->n_all + s->free[i]]));
         s->row_scale[s->equal[k]] = set->gradient_limit / most;
         s->target[k] *= s->row_scale[s->equal[k]];
     }
-    for (int i = 0; i < s->n_v; i++) {
-        s->low[i] -= 1e-8 * fmax(1.0, fabs(s->low[i]));
-        s->high[i] += 1e-8 * fmax(1.0, fabs(s->high[i]));
+    for (int i = n; i < s->n_v; i++) {
+        s->low[i] -= 1e-8 * larger(1.0, fabs(s->low[i]));
+        s->high[i] += 1e-8 * larger(1.0, fabs(s->high[i]));
     }
     for (int i = 0; i < n; i++)
         s->v[i] = inside(x0[s->free[i]], s->low[i], s->high[i], set->bound_push);
@@ -629,12 +633,12 @@ static void start(struct solver *s, const double *x0, const double *y, const dou
         for (int i = 0; i < s->n_v; i++) {
             double bound = i < n ? s->objective_scale * z[s->free[i]] : s->y[s->unequal[i - n]];
             double low = s->v[i] - s->low[i], high = s->high[i] - s->v[i];
-            s->zl[i] = isfinite(low) ? fmax(-bound, s->mu / low) : 0.0;
-            s->zu[i] = isfinite(high) ? fmax(bound, s->mu / high) : 0.0;
+            s->zl[i] = isfinite(low) ? larger(-bound, s->mu / low) : 0.0;
+            s->zu[i] = isfinite(high) ? larger(bound, s->mu / high) : 0.0;
         }
     }
     double theta = rows_residual(s, s->rows, s->v, s->residual);
-    s->theta_largest = 1e4 * fmax(1.0, theta), s->theta_small = 1e-4 * fmax(1.0, theta);
+    s->theta_largest = 1e4 * larger(1.0, theta), s->theta_small = 1e-4 * larger(1.0, theta);
 }
 
 // Unscaled result; see Solution in solution.py.
@@ -642,12 +646,12 @@ static void finish(struct solver *s, const double *lower, const double *upper,
                    const double *row_lower, const double *row_upper, double *x, double *y,
                    double *z, struct outcome *out) {
     memcpy(x, complete(s, s->v), s->n_all * sizeof(double));
-    for (int i = 0; i < s->n_all; i++) x[i] = fmin(fmax(x[i], lower[i]), upper[i]);
+    for (int i = 0; i < s->n_all; i++) x[i] = smaller(larger(x[i], lower[i]), upper[i]);
     out->objective = lift_first(s->p, x, s->rows, s->full);
     out->primal = 0.0;
     for (int r = 0; r < s->m; r++) {
         y[r] = s->row_scale[r] * s->y[r] / s->objective_scale;
-        out->primal = fmax(out->primal, fmax(row_lower[r] - s->rows[r], s->rows[r] - row_upper[r]));
+        out->primal = larger(out->primal, larger(row_lower[r] - s->rows[r], s->rows[r] - row_upper[r]));
     }
     lift_transposed(s->p, y, s->full2);
     for (int i = 0; i < s->n_all; i++) z[i] = -(s->full[i] + s->full2[i]);
@@ -655,11 +659,11 @@ static void finish(struct solver *s, const double *lower, const double *upper,
     for (int i = 0; i < s->n; i++) {
         int at = s->free[i];
         double bound = (s->zu[i] - s->zl[i]) / s->objective_scale;
-        out->dual = fmax(out->dual, fabs(bound - z[at]));
+        out->dual = larger(out->dual, fabs(bound - z[at]));
         z[at] = bound;
     }
     struct errors e = measure(s);
-    out->complementarity = e.bounds ? fmax(e.high_product, 0.0) / s->objective_scale : 0.0;
+    out->complementarity = e.bounds ? larger(e.high_product, 0.0) / s->objective_scale : 0.0;
     out->iterations = s->iterations;
 }
 

@@ -1,0 +1,98 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Initial guesses of a lift and where the optimiser took them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+FEASIBLE: Final = 1e-5
+"""Largest violation of a scaled constraint row that counts as met."""
+BINDING: Final = 1e-5
+"""Smallest multiplier of a limit that counts as binding: far above what the barrier leaves."""
+
+
+Progress = Callable[[int, int, float], None]
+"""Told after each run: starts tried, starts in all, best objective so far (NaN: none yet)."""
+
+
+@dataclass(frozen=True)
+class Start:
+    """Named initial guess: free control values, shape (n_free, 6) [rad], and box mass [kg].
+
+    The mass is moved into its bounds, and so needs no value where the weight is given.
+    """
+
+    name: str
+    control: Array
+    box_mass: float = 0.0
+
+
+@dataclass(frozen=True)
+class Optimum:
+    """Where one run of an optimiser ended.
+
+    Attributes
+    ----------
+    start : str
+        Name of the start.
+    converged : bool
+        Whether the optimiser reports a solution and its constraints hold to `FEASIBLE`.
+    outcome : str
+        The optimiser's own words.
+    control : array, shape (n_free, 6)
+        Free control values [rad].
+    box_mass : float
+        [kg].
+    objective : float
+        a effort [s] - b log(W + 10); the effort where the weight is given.
+    iterations : int
+        Iterations.
+    violation : float
+        Largest violation of a bound or scaled row.
+    violated : str
+        Name of that row; empty when nothing is violated.
+    binding : tuple of (str, float)
+        Limits that hold the objective back, with their multipliers, the strongest first.
+    stationarity, complementarity : float
+        Largest element of the Lagrangian's gradient, and of multiplier times slack.
+    solve_time : float
+        Wall time [s].
+    """
+
+    start: str
+    converged: bool
+    outcome: str
+    control: Array
+    box_mass: float
+    objective: float
+    iterations: int
+    violation: float
+    violated: str
+    binding: tuple[tuple[str, float], ...]
+    stationarity: float
+    complementarity: float
+    solve_time: float
+
+    def as_start(self) -> Start:
+        """Use the end of this run as a start."""
+        return Start(self.start, self.control, self.box_mass)
+
+
+def best_first(runs: Sequence[Optimum]) -> tuple[Optimum, ...]:
+    """Sort converged runs first, by objective; the others by violation."""
+    return tuple(
+        sorted(runs, key=lambda r: (not r.converged, r.objective if r.converged else r.violation))
+    )
+
+
+def best_objective(runs: Sequence[Optimum]) -> float:
+    """Objective of the best converged run; NaN: none."""
+    return min((run.objective for run in runs if run.converged), default=float('nan'))
