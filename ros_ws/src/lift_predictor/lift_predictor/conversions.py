@@ -19,6 +19,8 @@ from lift_predictor.core.sagittal.comparison import COMPARED_JOINTS, LiftCompari
 from lift_predictor.core.sagittal.parameters import JOINTS
 from lift_predictor.core.sagittal.prediction import PredictedLift2D
 from lift_predictor.core.sagittal.task import Box
+from lift_predictor.core.spatial.comparison import SpatialComparison
+from lift_predictor.core.spatial.prediction import PredictedLift3D
 from lifting_node.conversions import (
     LABORATORY,
     MotionQuality,
@@ -90,8 +92,8 @@ def prediction_to_msg(
     return message
 
 
-def trajectory_to_msg(prediction: PredictedLift2D) -> JointTrajectory:
-    """Return the joint trajectory of a solved prediction, all coordinates of the 2D skeleton.
+def trajectory_to_msg(prediction: PredictedLift2D | PredictedLift3D) -> JointTrajectory:
+    """Return the joint trajectory of a solved prediction, all coordinates of its skeleton.
 
     Efforts are the joint torques [N m]; the free pelvis has none.
     """
@@ -118,13 +120,18 @@ def trajectory_to_msg(prediction: PredictedLift2D) -> JointTrajectory:
 
 
 def comparison_to_msg(
-    comparison: LiftComparison, prediction: PredictedLift2D, lift: Lift
+    comparison: LiftComparison | SpatialComparison,
+    prediction: PredictedLift2D | PredictedLift3D,
+    lift: Lift,
 ) -> LiftComparisonMsg:
     """Return the message of a comparison."""
     loads = comparison.measured
+    joints, torques = COMPARED_JOINTS, JOINTS
+    if isinstance(comparison, SpatialComparison):
+        joints, torques = comparison.joint_names, comparison.torque_names
     message = LiftComparisonMsg(
         lift_id=prediction.lift_id,
-        joint_names=list(COMPARED_JOINTS),
+        joint_names=list(joints),
         joint_rmse=flat(comparison.joint_rmse),
         joint_pearson=flat(comparison.joint_pearson),
         vertical_force_rmse=comparison.vertical_force_rmse,
@@ -133,7 +140,7 @@ def comparison_to_msg(
         horizontal_force_pearson=comparison.horizontal_force_pearson,
         measured_effort=comparison.measured_effort,
         predicted_effort=comparison.predicted_effort,
-        torque_names=list(JOINTS),
+        torque_names=list(torques),
         time_from_start=flat(comparison.time),
         torque=flat(loads.torque),
         torque_lower=flat(loads.lower),

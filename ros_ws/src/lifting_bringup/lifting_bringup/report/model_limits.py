@@ -11,8 +11,9 @@ MODEL_LIMITS = (
     'Static optimisation shares the load among the muscles with the least squared activation. It '
     'finds no co-contraction of muscles that work against each other, so real loads can be '
     'higher.',
-    'The optimal lift is planar and moves both arms and both legs alike. For a lift to the side '
-    'its comparison covers the sagittal plane only.',
+    'The optimal lift of a symmetric recording is planar and moves both arms and both legs alike. '
+    'A lift to the side is predicted in space, within windows round the recorded postures and '
+    'ground reactions.',
     '"Not necessary" compares the peak of the recorded lift with the peak of the lift that needs '
     'the least joint effort for the same person, box, feet and places. That lift is not the one '
     'with the least spine load.',

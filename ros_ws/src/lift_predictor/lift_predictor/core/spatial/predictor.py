@@ -100,6 +100,7 @@ class SpatialPredictor:
     def __init__(self, options: SpatialOptions | None = None) -> None:
         self.options = options or SpatialOptions()
         self.person: SpatialPerson | None = None
+        self.subject: Subject | None = None
         self.grid = SpatialGrid(self.options.n_control, self.options.n_nodes)
         self.library: NodeLibrary = spatial_library()
         self._assembler = spatial_assembler(self.library, self.grid)
@@ -116,6 +117,7 @@ class SpatialPredictor:
             self.person = SpatialPerson.of(subject, self.options.coefficient_set, segments)
         except HumanModelError as error:
             raise TaskError(str(error)) from error
+        self.subject = subject
 
     def task(
         self, lift: Lift, box: Box, mass: tuple[float, float] | None = None
