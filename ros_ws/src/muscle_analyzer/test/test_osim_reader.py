@@ -111,6 +111,26 @@ def test_values_that_are_not_given_come_from_the_files_defaults(write_model):
     assert muscle.max_isometric_force == 500.0
 
 
+def test_own_curve_of_a_muscle_replaces_that_of_the_defaults(write_model):
+    tag = 'Millard2012EquilibriumMuscle'
+    defaults = f"""<defaults><{tag} name="default"><FiberForceLengthCurve>
+      <strain_at_zero_force>0.2</strain_at_zero_force></FiberForceLengthCurve>
+      <ForceVelocityCurve><isometric_slope>4</isometric_slope></ForceVelocityCurve></{tag}>
+      </defaults><gravity>"""
+    own = """<FiberForceLengthCurve><strain_at_one_norm_force>0.8</strain_at_one_norm_force>
+      <curviness></curviness></FiberForceLengthCurve><max_contraction_velocity>"""
+    path = write_model(
+        ('DeGrooteFregly2016Muscle', tag), ('<gravity>', defaults),
+        ('<max_contraction_velocity>', own),
+    )
+    properties = read_osim(path).muscles[0].properties
+    curves = {name: value for name, value in properties.items() if '/' in name}
+    assert curves == {
+        'FiberForceLengthCurve/strain_at_one_norm_force': 0.8,
+        'ForceVelocityCurve/isometric_slope': 4.0,
+    }
+
+
 @pytest.mark.parametrize(
     'tag', ['Millard2012EquilibriumMuscle', 'Thelen2003Muscle', 'DeGrooteFregly2016Muscle']
 )

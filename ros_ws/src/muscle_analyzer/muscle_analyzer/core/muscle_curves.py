@@ -5,19 +5,22 @@ Force-length-velocity properties of a muscle with a rigid tendon.
 
 Curves of De Groote et al. 2016 (Ann Biomed Eng 44:2922) with the coefficients of OpenSim 4's
 ``DeGrooteFregly2016Muscle``, which lets the active curve pass through (1, 1) and the velocity
-curve through (-1, 0) and (0, 1).  The tendon has its slack length (``ignore_tendon_compliance``
+curve through (-1, 0) and (0, 1); Millard's and Thelen's muscles have curves of their own
+(`millard_curves`, `thelen_curves`).  The tendon has its slack length (``ignore_tendon_compliance``
 of the model), the muscle a constant thickness (Zajac 1989, Crit Rev Biomed Eng 17:359).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from muscle_analyzer.core.millard_curves import MillardCurves
 from muscle_analyzer.core.osim_model import Muscle
+from muscle_analyzer.core.thelen_curves import ThelenCurves
 
 Array = NDArray[np.float64]
 
@@ -86,6 +89,27 @@ def force_velocity(velocity: Array) -> Array:
     return np.asarray(d1 * np.arcsinh(d2 * np.asarray(velocity) + d3) + d4)
 
 
+class Curves(Protocol):
+    """
+    Multipliers of some of a model's muscles, of which `members` (n,) are the numbers.
+
+    Lengths and velocities (n,) are normalised as those of the functions above.
+    """
+
+    @property
+    def members(self) -> NDArray[np.int64]:
+        """Give the numbers of the muscles that have these curves."""
+
+    def active(self, length: Array, /) -> Array:
+        """Give the active force-length multipliers."""
+
+    def passive(self, length: Array, /) -> Array:
+        """Give the passive force multipliers."""
+
+    def rate(self, velocity: Array, /) -> Array:
+        """Give the force-velocity multipliers."""
+
+
 class Fibre(NamedTuple):
     """Length [m], velocity [m/s] and pennation angle [rad] of muscle fibres, each (n_m,)."""
 
@@ -112,7 +136,11 @@ class MuscleState(NamedTuple):
 
 @dataclass(frozen=True)
 class MuscleParameters:
-    """Parameters of all muscles, each (n_m,); lengths [m], force [N], velocity [1/s]."""
+    """
+    Parameters of all muscles, each (n_m,); lengths [m], force [N], velocity [1/s].
+
+    `curves` are those of muscles that have not De Groote's.
+    """
 
     max_isometric_force: Array
     optimal_fiber_length: Array
@@ -121,6 +149,7 @@ class MuscleParameters:
     max_velocity: Array
     width_scale: Array
     passive_strain: Array
+    curves: tuple[Curves, ...] = ()
 
     @classmethod
     def of(cls, muscles: tuple[Muscle, ...]) -> MuscleParameters:
@@ -137,6 +166,11 @@ class MuscleParameters:
             max_velocity=property_of('max_contraction_velocity', MAX_VELOCITY),
             width_scale=property_of('active_force_width_scale', WIDTH_SCALE),
             passive_strain=property_of('passive_fiber_strain_at_one_norm_force', PASSIVE_STRAIN),
+            curves=tuple(
+                curves
+                for curves in (MillardCurves(muscles), ThelenCurves(muscles))
+                if curves.members.size > 0
+            ),
         )
 
     def fibre(self, path_length: Array, path_velocity: Array) -> Fibre:
@@ -166,10 +200,16 @@ class MuscleParameters:
         length = fibre.length / self.optimal_fiber_length
         velocity = fibre.velocity / (self.max_velocity * self.optimal_fiber_length)
         along = self.max_isometric_force * np.cos(fibre.pennation)
-        # Beyond its maximum shortening velocity a muscle pulls no more; it never pushes.
-        rate = np.maximum(force_velocity(velocity), 0.0)
+        by_length = active_force_length(length, self.width_scale)
+        rate = force_velocity(velocity)
         stretched = passive_force_length(length, self.passive_strain)
+        for curves in self.curves:
+            k = curves.members
+            by_length[k] = curves.active(length[k])
+            rate[k] = curves.rate(velocity[k])
+            stretched[k] = curves.passive(length[k])
+        # Beyond its maximum shortening velocity a muscle pulls no more; it never pushes.
         return MuscleState(
-            active=np.maximum(along, 0.0) * active_force_length(length, self.width_scale) * rate,
+            active=np.maximum(along, 0.0) * by_length * np.maximum(rate, 0.0),
             passive=np.maximum(along * stretched, 0.0) * float(passive),
         )

@@ -182,7 +182,8 @@ class Muscle:
     pennation_angle : float
         At optimal fibre length, in rad.
     properties : mapping
-        Every other numerical or true/false property that the file gives, by its name (true is 1).
+        Every other numerical or true/false property that the file gives, by its name (true is 1);
+        'curve/property' for those of a muscle's own curves.
     """
 
     name: str

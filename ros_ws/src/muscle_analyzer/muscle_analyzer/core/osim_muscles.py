@@ -68,20 +68,35 @@ def read_muscle(xml: OsimXml, frames: FrameResolver, element: Element) -> Muscle
 
 
 def _read_properties(xml: OsimXml, element: Element) -> dict[str, float]:
-    """Return the simple numerical and true/false children that are not fields of their own."""
-    properties = {}
+    """Return the simple numerical and true/false children that are not fields of their own.
+
+    Those of a curve (Millard's muscle has some) are named 'curve/property'.
+    """
+    properties: dict[str, float] = {}
     for child in xml.children(element):
-        text = (child.text or '').strip()
-        if child.tag in _OWN_FIELDS or len(child) or not text:
-            continue
-        if text in ('true', 'false'):
-            properties[child.tag] = float(text == 'true')
-        else:
-            try:
-                properties[child.tag] = float(text)
-            except ValueError:
-                continue  # text properties (descriptions) carry nothing that is computed with
+        if child.tag.endswith('Curve'):
+            # A muscle's own curve replaces the one of the file's defaults as a whole.
+            for name in [name for name in properties if name.startswith(f'{child.tag}/')]:
+                del properties[name]
+            properties |= {
+                f'{child.tag}/{part.tag}': value
+                for part in child
+                if (value := _simple_value(part)) is not None
+            }
+        elif child.tag not in _OWN_FIELDS and (value := _simple_value(child)) is not None:
+            properties[child.tag] = value
     return properties
+
+
+def _simple_value(element: Element) -> float | None:
+    """Return a number, 1 or 0 for true or false, None for anything else."""
+    text = (element.text or '').strip()
+    if text in ('true', 'false'):
+        return float(text == 'true')
+    try:
+        return None if len(element) else float(text)
+    except ValueError:
+        return None  # text properties (descriptions) carry nothing that is computed with
 
 
 def _read_point(xml: OsimXml, frames: FrameResolver, element: Element) -> PathPoint:

@@ -52,11 +52,15 @@ def muscle_element(muscle: Muscle, joint_of: Mapping[str, str]) -> Element:
     add_numbers(element, 'optimal_fiber_length', muscle.optimal_fiber_length)
     add_numbers(element, 'tendon_slack_length', muscle.tendon_slack_length)
     add_numbers(element, 'pennation_angle_at_optimal', muscle.pennation_angle)
+    curves: dict[str, Element] = {}
     for name, value in muscle.properties.items():
+        curve, _, part = name.rpartition('/')
+        if curve and curve not in curves:
+            curves[curve] = SubElement(element, curve, name=f'{muscle.name}_{curve}')
         if name.startswith(_FLAG):
             add_flag(element, name, bool(value))
         else:
-            add_numbers(element, name, value)
+            add_numbers(curves.get(curve, element), part, value)
     return element
 
 
