@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from lifting_bringup import opensim_command, planning_command, study_command
+from lifting_bringup import emg_command, opensim_command, planning_command, study_command
 from lifting_bringup.bags.exceptions import BagError
 from lifting_bringup.graph_errors import GraphError
 from lifting_bringup.node_process import discovery, node_processes
@@ -95,6 +95,7 @@ def _parser() -> argparse.ArgumentParser:
     report.set_defaults(handler=_report)
 
     opensim_command.add_to(commands)
+    emg_command.add_to(commands)
     planning_command.add_to(commands)
     study_command.add_to(commands)
     return parser

@@ -61,3 +61,7 @@ class ModelWriteError(MuscleAnalyzerError):
 
 class OpenSimError(MuscleAnalyzerError):
     """OpenSim is not there, or it could not run on the exported files."""
+
+
+class EmgError(MuscleAnalyzerError):
+    """EMG cannot be processed, or a channel belongs to no muscle; names channel and value."""

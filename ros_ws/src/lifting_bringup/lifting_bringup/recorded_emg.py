@@ -1,0 +1,78 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""The EMG of a recording as one table, from the blocks of its topic `emg`."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lifting_bringup.bags.exceptions import UnreadableBagError
+from lifting_bringup.bags.reader import BagReader
+from muscle_analyzer.core.emg import EmgRecording
+
+TOPIC = 'emg'
+_RATE = re.compile(r'^samples, (?P<rate>[0-9.e+]+) Hz$')
+_CHANNEL = re.compile(r'^(?P<name>.*) \[(?P<unit>.*)\]$')
+#: A block may begin so far from where the one before ends, as a share of a sampling interval.
+_GAP = 0.5
+
+
+def recorded_emg(bag: Path, start: float) -> EmgRecording:
+    """Read the EMG of a recording.
+
+    Parameters
+    ----------
+    bag : Path
+    start : float
+        Stamp that is zero of the result's time, s.
+
+    Raises
+    ------
+    UnreadableBagError
+        If the recording has no EMG, its blocks do not say what they hold, differ in channels or
+        rate, or leave a gap.
+    """
+    with BagReader(bag) as reader:
+        names = [name for name in reader.topics if name.strip('/') == TOPIC]
+        blocks = [(stamp, message) for _, stamp, message in reader.messages(names)]
+    if not names or not blocks:
+        raise UnreadableBagError(f'{bag}: has no EMG (topic {TOPIC!r} is missing or empty)')
+    rate, channels, units = _layout(bag, blocks[0][1])
+    times, values = [], []
+    follows: float | None = None
+    for stamp, message in blocks:
+        if _layout(bag, message) != (rate, channels, units):
+            raise UnreadableBagError(f'{bag}: {TOPIC}: channels or rate change on the way')
+        part = np.asarray(message.data, np.float64).reshape(-1, len(channels))
+        # Whole nanoseconds first: as seconds since 1970 a double is too coarse.
+        begin = (stamp - round(start * 1e9)) * 1e-9
+        if follows is not None and abs(begin - follows) > _GAP / rate:
+            raise UnreadableBagError(
+                f'{bag}: {TOPIC}: block at {begin:.6f} s where {follows:.6f} s was to follow'
+            )
+        times.append(begin + np.arange(len(part)) / rate)
+        values.append(part)
+        follows = begin + len(part) / rate
+    return EmgRecording(channels, units, np.concatenate(times), np.concatenate(values))
+
+
+def _layout(bag: Path, message: Any) -> tuple[float, tuple[str, ...], tuple[str, ...]]:
+    """Return rate, channel names and units that a block's layout says."""
+    labels = [dimension.label for dimension in message.layout.dim]
+    rate = _RATE.match(labels[0]) if len(labels) == 2 else None
+    found = [_CHANNEL.match(label) for label in labels[1].split(',')] if rate else []
+    channels = [match for match in found if match]
+    if rate is None or len(channels) != len(found) or len(message.data) % len(found):
+        raise UnreadableBagError(
+            f'{bag}: {TOPIC}: layout {labels} does not say rate, channels and units of '
+            f'{len(message.data)} values'
+        )
+    return (
+        float(rate['rate']),
+        tuple(match['name'] for match in channels),
+        tuple(match['unit'] for match in channels),
+    )
