@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lift_predictor.core.exceptions import UnreachableError
-from lift_predictor.core.planning.least_squares import minimise
+from lift_predictor.core.least_squares import minimise
 from lift_predictor.core.planning.technique import Technique, lowering
 from lift_predictor.core.sagittal.kinematics import REACHED, chain_positions
 from lift_predictor.core.sagittal.parameters import JOINTS, LiftParameters

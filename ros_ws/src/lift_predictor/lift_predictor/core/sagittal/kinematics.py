@@ -5,10 +5,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lift_predictor.core.least_squares import minimise
 from lift_predictor.core.sagittal.parameters import (
     BODIES,
     CIRCLE_BODIES,
@@ -126,23 +128,31 @@ def reach(
     distance : float
         Remaining distance of the grip [m].
     """
-    # Loads for long, and a node that starts does not need it.
-    from scipy.optimize import least_squares
-
     rear, front = parameters.support
 
     def residual(q: Array, secondary: float) -> Array:
         state = chain_positions(q, parameters)
-        forward = float(state.centre_of_mass[0])
-        unbalanced = max(rear - forward, forward - front, 0.0)
-        wishes = np.append(np.minimum(state.gaps[0], 0.0), unbalanced)
-        apart = state.joints['hand'][0] - grip
-        return np.concatenate((apart, secondary * wishes, _POSTURE_WEIGHT * (q - reference)))
+        forward = state.centre_of_mass
+        unbalanced = np.maximum(np.maximum(rear - forward, forward - front), 0.0)
+        wishes = np.column_stack((np.minimum(state.gaps, 0.0), unbalanced))
+        apart = state.joints['hand'] - grip
+        return np.hstack((apart, secondary * wishes, _POSTURE_WEIGHT * (q - reference)))
+
+    posture = minimise(partial(residual, secondary=1.0), reference, lower, upper)
+    rest = residual(posture[None], 1.0)[0, : -len(posture)]
+    if np.abs(rest).max() <= REACHED:
+        return posture, float(np.linalg.norm(rest[:2]))
+    # Loads for long, and most postures do not need it.
+    from scipy.optimize import least_squares
 
     posture, distance = np.clip(reference, lower, upper), np.inf
     for secondary in (1.0, 0.0):
+
+        def one(q: Array, secondary: float = secondary) -> Array:
+            return np.asarray(residual(q[None], secondary)[0])
+
         solution = least_squares(
-            residual, posture, bounds=(lower - 1e-9, upper + 1e-9), xtol=1e-10, args=(secondary,)
+            one, posture, bounds=(lower - 1e-9, upper + 1e-9), xtol=1e-10
         )
         posture = np.clip(solution.x, lower, upper)
         hand = chain_positions(posture, parameters).joints['hand'][0]

@@ -16,6 +16,10 @@ STEP: Final = 1e-7
 """Forward difference: the square root of the machine's precision, for unknowns of order 1."""
 FIRST_DAMPING: Final = 1e-4
 LARGEST_DAMPING: Final = 1e8
+NEARER: Final = 0.6
+"""Share of the way to a bound that one step may go: who is on a bound early is stuck there."""
+TINY: Final = 1e-12
+"""Keeps the normal equations regular where a residual does not depend on an unknown."""
 
 
 def minimise(
@@ -25,10 +29,12 @@ def minimise(
     upper: Array,
     iterations: int = 60,
     small: float = 1e-12,
+    longest: float = 0.3,
 ) -> Array:
     """Minimise the sum of squared residuals between bounds (Levenberg 1944, Marquardt 1963).
 
-    Steps are cut at the bounds; an unknown that lies on a bound and would leave it is held.
+    An unknown that a step would carry over its bound goes part of the way, and the others are
+    found again with it. Made for starts near the answer; it can end in a worse valley.
 
     Parameters
     ----------
@@ -41,7 +47,9 @@ def minimise(
     iterations : int
         Accepted and refused steps at most.
     small : float
-        Ends when the sum of squares falls by less than this, or is below it.
+        Ends when the sum of squares falls by less than this share, or is below it.
+    longest : float
+        Change of an unknown in one step at most; keeps the search in the valley it begins in.
     """
     x = np.clip(x, lower, upper)
     offsets = np.vstack((np.zeros(len(x)), STEP * np.eye(len(x))))
@@ -54,12 +62,9 @@ def minimise(
         free = ~(((x <= lower) & (gradient > 0.0)) | ((x >= upper) & (gradient < 0.0)))
         if cost < small or not free.any() or damping > LARGEST_DAMPING:
             break
-        part = jacobian[:, free]
-        normal = part.T @ part
-        normal += damping * np.diag(np.diag(normal) + 1e-12)
-        trial = x.copy()
-        trial[free] -= np.linalg.solve(normal, gradient[free])
-        trial = np.clip(trial, lower, upper)
+        room = (NEARER * (lower - x), NEARER * (upper - x))
+        step = _step(jacobian, values[0], damping, free, *room)
+        trial = x + step * min(1.0, longest / max(float(np.abs(step).max()), TINY))
         new = residuals(trial + offsets)
         new_cost = float(new[0] @ new[0])
         if new_cost >= cost:
@@ -67,6 +72,30 @@ def minimise(
             continue
         gain, x, values, cost = cost - new_cost, trial, new, new_cost
         damping = max(0.1 * damping, 1e-12)
-        if gain < small * max(cost, small):
+        if gain < 1e-6 * cost:
             break
     return x
+
+
+def _step(
+    jacobian: Array,
+    values: Array,
+    damping: float,
+    free: NDArray[np.bool_],
+    low: Array,
+    high: Array,
+) -> Array:
+    """Damped Gauss-Newton step between bounds; unknowns reach them one round after the other."""
+    step = np.zeros(len(free))
+    free = free.copy()
+    while free.any():
+        part = jacobian[:, free]
+        normal = part.T @ part
+        normal += damping * np.diag(np.diag(normal) + TINY)
+        step[free] = np.linalg.solve(normal, -part.T @ (values + jacobian[:, ~free] @ step[~free]))
+        over = free & ((step < low) | (step > high))
+        if not over.any():
+            break
+        step = np.clip(step, low, high)
+        free &= ~over
+    return step
