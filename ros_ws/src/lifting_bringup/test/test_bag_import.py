@@ -12,13 +12,9 @@ from rosbags.interfaces import QosDurability
 from lifting_bringup.bags.bag_writer import START_TIME_NS
 from lifting_bringup.bags.exceptions import BagError, FileFormatError, SubjectFileError
 from lifting_bringup.bags.importer import ImportOptions, import_recording
-from lifting_bringup.bags.opensim_files import (
-    MarkerTable,
-    StorageTable,
-    write_storage,
-    write_trc,
-)
+from lifting_bringup.bags.opensim_files import MarkerTable, write_trc
 from lifting_bringup.bags.reader import BagReader
+from muscle_analyzer.core.opensim.storage import Storage, write_storage
 
 ROOT = Path(__file__).resolve().parents[4]
 SQUATS = ROOT.parent / 'shared' / 'data' / 'squats_bodyweight'
@@ -50,7 +46,7 @@ def files(standing, tmp_path):
             values.append(block)
     write_storage(
         tmp_path / 'a.mot',
-        StorageTable('a', tuple(columns), file.time, np.concatenate(values, axis=1), None),
+        Storage('a', tuple(columns), file.time, np.concatenate(values, axis=1)),
     )
     (tmp_path / 'subject.yaml').write_text(standing.subject_file)
     return ImportOptions(

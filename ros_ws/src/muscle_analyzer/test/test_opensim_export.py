@@ -193,7 +193,7 @@ def test_a_force_that_is_not_a_number_is_not_written(box_lift, tmp_path):
     pull[4, 1] = np.nan
     hand = replace(motion.forces[2], force=pull)
     broken = replace(motion, forces=(*motion.forces[:2], hand))
-    with pytest.raises(StorageError, match=r"'hand_force_right_vy' is nan at 0\.04 s"):
+    with pytest.raises(StorageError, match=r"'hand_force_right_vy': nan at 0\.04 s is not"):
         export_motion(tmp_path, broken)
 
 

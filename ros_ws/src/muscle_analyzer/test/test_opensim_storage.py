@@ -84,7 +84,7 @@ def test_values_between_rows_lie_on_a_line_and_none_outside(write):
     [
         ('endheader\n', '', 'no line endheader'),
         ('time\thip', 'frame\thip', r"line 9: first column is 'frame'"),
-        ('\tpelvis_tx', '\thip', r"line 9: column 'hip' is there twice"),
+        ('\tpelvis_tx', '\thip', r"line 9, column 'hip': is there twice"),
         ('0.1\t45', '0.1\tx45', r"line 11, column 'hip': 'x45' is not a number"),
         ('0.1\t45\t2.5', '0.1\t45', r'line 11: 2 values where 3 belong'),
         ('0.1\t45', '0.0\t45', r"line 11, column 'time': 0 s after 0 s does not increase"),
@@ -110,7 +110,7 @@ def test_a_file_that_is_not_there_is_named(tmp_path):
     ('time', 'values', 'columns', 'message'),
     [
         ([0.0, 0.0], np.zeros((2, 1)), ('a',), 'does not increase'),
-        ([0.0, 1.0], np.array([[0.0], [np.nan]]), ('a',), "column 'a' is nan at 1 s"),
+        ([0.0, 1.0], np.array([[0.0], [np.nan]]), ('a',), "column 'a': nan at 1 s is not finite"),
         ([0.0, 1.0], np.zeros((2, 2)), ('a',), 'do not fit values of shape'),
         ([0.0, 1.0], np.zeros((2, 2)), ('a', 'a'), 'must be unique words'),
         ([0.0, 1.0], np.zeros((2, 1)), ('a b',), 'must be unique words'),

@@ -1,8 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Strict readers and writers of OpenSim's TRC, MOT and STO files.
+"""Strict readers of OpenSim's TRC, MOT and STO files, and a writer of TRC.
 
-Formats as described in OpenSim's user guide, "Marker (.trc) Files" and "Storage (.sto) Files".
+Format as described in OpenSim's user guide, "Marker (.trc) Files"; MOT and STO are read by
+`muscle_analyzer.core.opensim.storage`.
 Nothing is repaired: a wrong count, an unsorted stamp or a word where a number belongs is an
 error that names file, line and field.
 """
@@ -16,6 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifting_bringup.bags.exceptions import FileFormatError
+from muscle_analyzer.core.exceptions import StorageError
+from muscle_analyzer.core.opensim import storage
+from muscle_analyzer.core.opensim.storage import Storage
 
 Array = NDArray[np.float64]
 
@@ -46,37 +50,6 @@ class MarkerTable:
     positions: Array
     units: str
     rate: float
-
-
-@dataclass(frozen=True)
-class StorageTable:
-    """Columns of a MOT or STO file.
-
-    Attributes
-    ----------
-    name : str
-        First header line.
-    columns : tuple of str
-        Column labels without 'time'.
-    time : ndarray, shape (n,)
-        Seconds, strictly increasing.
-    values : ndarray, shape (n, n_columns)
-        As in the file.
-    in_degrees : bool or None
-        The 'inDegrees' header; None when the file has none.
-    """
-
-    name: str
-    columns: tuple[str, ...]
-    time: Array
-    values: Array
-    in_degrees: bool | None
-
-    def column(self, label: str) -> Array:
-        """Return one column by label; raise `KeyError` when there is none."""
-        if label not in self.columns:
-            raise KeyError(label)
-        return self.values[:, self.columns.index(label)]
 
 
 def _lines(path: Path) -> list[str]:
@@ -236,32 +209,7 @@ def write_trc(path: str | Path, table: MarkerTable) -> None:
     path.write_text('\n'.join(lines) + '\n', encoding='utf-8')
 
 
-def _storage_header(path: Path, lines: list[str]) -> tuple[dict[str, str], tuple[str, ...], int]:
-    """Return the header, the column labels and the index of their line."""
-    header: dict[str, str] = {}
-    end = None
-    for i, line in enumerate(lines):
-        if line.strip().lower() == 'endheader':
-            end = i
-            break
-        if '=' in line:
-            key, _, value = line.partition('=')
-            header[key.strip().lower()] = value.strip()
-    if end is None:
-        raise FileFormatError(path, 'is not a MOT or STO file (no endheader line)')
-    label_line = end + 1
-    while label_line < len(lines) and not lines[label_line].strip():
-        label_line += 1
-    if label_line >= len(lines):
-        raise FileFormatError(path, 'ends before the column labels')
-    labels = tuple(lines[label_line].split())
-    if not labels or labels[0].lower() != 'time':
-        raise FileFormatError(path, 'first column is not time', line=label_line + 1)
-    _unique(path, label_line + 1, labels)
-    return header, labels, label_line
-
-
-def read_storage(path: str | Path) -> StorageTable:
+def read_storage(path: str | Path) -> Storage:
     """Read a MOT or STO file.
 
     Parameters
@@ -274,50 +222,9 @@ def read_storage(path: str | Path) -> StorageTable:
     FileFormatError
         Foreign, truncated or inconsistent file.
     """
-    path = Path(path)
-    lines = _lines(path)
-    header, labels, label_line = _storage_header(path, lines)
-    numbered = [(i + 1, s) for i, s in enumerate(lines) if i > label_line and s.strip()]
-    for keys, found, what in (
-        (('nrows', 'datarows'), len(numbered), 'rows'),
-        (('ncolumns', 'datacolumns'), len(labels), 'columns'),
-    ):
-        for key in keys:
-            if key in header and _integer(path, 1, key, header[key]) != found:
-                raise FileFormatError(
-                    path,
-                    f'header says {header[key]} {what}, the file holds {found} (truncated?)',
-                    field=key,
-                )
-    data = np.empty((len(numbered), len(labels)))
-    for i, (number, row) in enumerate(numbered):
-        cells = row.split()
-        if len(cells) != len(labels):
-            raise FileFormatError(
-                path, f'{len(cells)} cells where {len(labels)} belong', line=number
-            )
-        for j, text in enumerate(cells):
-            data[i, j] = _number(path, number, labels[j], text)
-    if not numbered:
-        raise FileFormatError(path, 'holds no rows')
-    check_stamps(path, data[:, 0], numbered[0][0])
-    degrees = header.get('indegrees')
-    return StorageTable(
-        name=lines[0].strip(),
-        columns=labels[1:],
-        time=data[:, 0].copy(),
-        values=data[:, 1:].copy(),
-        in_degrees=None if degrees is None else degrees.lower() == 'yes',
-    )
-
-
-def write_storage(path: str | Path, table: StorageTable) -> None:
-    """Write a MOT or STO file."""
-    lines = [table.name, 'version=1', f'nRows={table.time.size}']
-    lines.append(f'nColumns={len(table.columns) + 1}')
-    if table.in_degrees is not None:
-        lines.append(f'inDegrees={"yes" if table.in_degrees else "no"}')
-    lines += ['endheader', '\t'.join(('time', *table.columns))]
-    for stamp, row in zip(table.time, table.values, strict=True):
-        lines.append('\t'.join(f'{v:.9g}' for v in (stamp, *row)))
-    Path(path).write_text('\n'.join(lines) + '\n', encoding='utf-8')
+    try:
+        return storage.read_storage(Path(path))
+    except StorageError as error:
+        raise FileFormatError(
+            path, error.problem, line=error.line, field=error.column
+        ) from error

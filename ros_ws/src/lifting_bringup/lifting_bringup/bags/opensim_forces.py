@@ -10,8 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from lifting_bringup.bags.exceptions import FileFormatError
-from lifting_bringup.bags.opensim_files import StorageTable, read_storage, read_trc
+from lifting_bringup.bags.opensim_files import read_storage, read_trc
 from lifting_bringup.bags.recording import Plate, RawRecording
+from muscle_analyzer.core.opensim.storage import Storage
 
 # Both namings in use: ground_force_1_vx / ground_force_1_mx and 1_ground_force_vx /
 # 1_ground_torque_x (OpenSim user guide, "External loads").
@@ -23,14 +24,14 @@ _MOMENT = re.compile(
 )
 
 
-def plates_from_storage(path: str | Path, table: StorageTable) -> tuple[Plate, ...]:
+def plates_from_storage(path: str | Path, table: Storage) -> tuple[Plate, ...]:
     """Collect the plates of a ground-reaction file.
 
     Parameters
     ----------
     path : str or Path
         For messages.
-    table : StorageTable
+    table : Storage
         Columns '<plate>_vx .. vz' [N], '_px .. pz' [m], '_mx .. mz' or torque columns [N m].
 
     Returns

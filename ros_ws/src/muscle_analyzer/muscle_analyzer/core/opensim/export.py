@@ -138,5 +138,5 @@ def read_coordinates(path: Path, model: MultibodyModel) -> tuple[Array, Array]:
     storage = read_storage(path).in_radians(rotational_coordinates(model))
     missing = [name for name in model.coordinate_names if name not in storage.columns]
     if missing:
-        raise StorageError(f'{path}: there is no column for the coordinate {missing[0]!r}')
+        raise StorageError(path, f'there is no column for the coordinate {missing[0]!r}')
     return storage.time, storage.select(model.coordinate_names)

@@ -52,7 +52,7 @@ class Storage:
     def column(self, label: str) -> Array:
         """Return the column (n,) of that label, or raise StorageError."""
         if label not in self.columns:
-            raise StorageError(f'{self.name}: there is no column {label!r}')
+            raise StorageError(self.name, f'there is no column {label!r}')
         return self.values[:, self.columns.index(label)]
 
     def select(self, labels: Sequence[str]) -> Array:
@@ -82,8 +82,9 @@ class Storage:
         outside = (wanted < self.time[0] - slack) | (wanted > self.time[-1] + slack)
         if np.any(outside):
             raise StorageError(
-                f'{self.name}: {wanted[outside][0]:.6g} s is outside the table, '
-                f'{self.time[0]:.6g} to {self.time[-1]:.6g} s'
+                self.name,
+                f'{wanted[outside][0]:.6g} s is outside the table, {self.time[0]:.6g} to '
+                f'{self.time[-1]:.6g} s',
             )
         return np.stack([np.interp(wanted, self.time, c) for c in self.values.T], axis=1)
 
@@ -99,18 +100,20 @@ def write_storage(path: Path, storage: Storage) -> None:
     n, m = storage.time.size, len(storage.columns)
     if n == 0 or storage.time.shape != (n,) or storage.values.shape != (n, m):
         raise StorageError(
-            f'{path}: {storage.time.shape} times and {m} columns do not fit values of shape '
-            f'{storage.values.shape}'
+            path,
+            f'{storage.time.shape} times and {m} columns do not fit values of shape '
+            f'{storage.values.shape}',
         )
     if len(set(storage.columns)) != m or any(len(label.split()) != 1 for label in storage.columns):
-        raise StorageError(f'{path}: column labels must be unique words: {storage.columns}')
+        raise StorageError(path, f'column labels must be unique words: {storage.columns}')
     _check_times(path, storage.time, [None] * n)
     bad = np.argwhere(~np.isfinite(storage.values))
     if bad.size:
         row, column = bad[0]
         raise StorageError(
-            f'{path}: column {storage.columns[column]!r} is {storage.values[row, column]} at '
-            f'{storage.time[row]:.6g} s'
+            path,
+            f'{storage.values[row, column]} at {storage.time[row]:.6g} s is not finite',
+            column=storage.columns[column],
         )
     lines = [
         storage.name,
@@ -139,20 +142,20 @@ def read_storage(path: Path) -> Storage:
     try:
         lines = path.read_text(encoding='utf-8-sig').splitlines()
     except (OSError, UnicodeDecodeError) as error:
-        raise StorageError(f'{path}: cannot be read: {error}') from error
+        raise StorageError(path, f'cannot be read: {error}') from error
     header, first = _read_header(path, lines)
     numbered = [(i + 1, line) for i, line in enumerate(lines) if i >= first and line.strip()]
     if not numbered:
-        raise StorageError(f'{path}: ends before the column labels')
+        raise StorageError(path, 'ends before the column labels')
     label_line, label_text = numbered[0]
     labels = tuple(label_text.split())
     if labels[0].lower() != _TIME:
-        raise StorageError(f'{path}, line {label_line}: first column is {labels[0]!r}, not time')
+        raise StorageError(path, f'first column is {labels[0]!r}, not time', line=label_line)
     if twice := [label for label in labels if labels.count(label) > 1]:
-        raise StorageError(f'{path}, line {label_line}: column {twice[0]!r} is there twice')
+        raise StorageError(path, 'is there twice', line=label_line, column=twice[0])
     rows = numbered[1:]
     if not rows:
-        raise StorageError(f'{path}: holds no rows')
+        raise StorageError(path, 'holds no rows')
     _check_count(path, header, _ROW_KEYS, len(rows), 'rows')
     _check_count(path, header, _COLUMN_KEYS, len(labels), 'columns')
     data = np.array([_read_row(path, number, text, labels) for number, text in rows])
@@ -175,7 +178,7 @@ def _read_header(path: Path, lines: list[str]) -> tuple[dict[str, str], int]:
         key, equals, value = line.partition('=')
         if equals:
             header[key.strip().lower()] = value.strip()
-    raise StorageError(f'{path}: no line endheader: this is no .mot or .sto file')
+    raise StorageError(path, 'no line endheader: this is no .mot or .sto file')
 
 
 def _check_count(
@@ -184,14 +187,14 @@ def _check_count(
     for key in keys:
         if key in header and header[key] != str(found):
             raise StorageError(
-                f'{path}: header says {key}={header[key]}, the file holds {found} {what}'
+                path, f'header says {key}={header[key]}, the file holds {found} {what} (truncated?)'
             )
 
 
 def _read_degrees(path: Path, header: dict[str, str]) -> bool:
     text = header.get('indegrees', 'no').lower()
     if text not in ('yes', 'no'):
-        raise StorageError(f'{path}: inDegrees={text!r} is neither yes nor no')
+        raise StorageError(path, f'inDegrees={text!r} is neither yes nor no')
     return text == 'yes'
 
 
@@ -199,7 +202,7 @@ def _read_row(path: Path, number: int, text: str, labels: tuple[str, ...]) -> li
     cells = text.split()
     if len(cells) != len(labels):
         raise StorageError(
-            f'{path}, line {number}: {len(cells)} values where {len(labels)} belong'
+            path, f'{len(cells)} values where {len(labels)} belong', line=number
         )
     row = []
     for label, cell in zip(labels, cells, strict=True):
@@ -207,18 +210,17 @@ def _read_row(path: Path, number: int, text: str, labels: tuple[str, ...]) -> li
             row.append(float(cell))
         except ValueError:
             raise StorageError(
-                f'{path}, line {number}, column {label!r}: {cell!r} is not a number'
+                path, f'{cell!r} is not a number', line=number, column=label
             ) from None
     return row
 
 
 def _check_times(path: Path, time: Array, numbers: Sequence[int | None]) -> None:
     for i, stamp in enumerate(time):
-        where = f'{path}' if numbers[i] is None else f'{path}, line {numbers[i]}'
+        problem = ''
         if not np.isfinite(stamp):
-            raise StorageError(f"{where}, column 'time': {stamp} is not finite")
-        if i and stamp <= time[i - 1]:
-            raise StorageError(
-                f"{where}, column 'time': {stamp:.9g} s after {time[i - 1]:.9g} s does not "
-                'increase'
-            )
+            problem = f'{stamp} is not finite'
+        elif i and stamp <= time[i - 1]:
+            problem = f'{stamp:.9g} s after {time[i - 1]:.9g} s does not increase'
+        if problem:
+            raise StorageError(path, problem, line=numbers[i], column=_TIME)
