@@ -104,6 +104,7 @@ def lift_parameters(person: Person, mass: float) -> LiftParameters:
         box_mass=mass,
         box_radius=BOX_DEPTH / 2,
         box_from_hand=np.zeros(2),
+        lowest_grip=0.0,
     )
 
 

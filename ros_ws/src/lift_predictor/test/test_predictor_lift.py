@@ -97,6 +97,8 @@ def test_motion_meets_the_task(outcome, person, mass) -> None:
         for sample in (0, middle, -1):
             apart = motion.coordinate(joint)[sample] - recorded.coordinate(joint)[sample]
             assert abs(apart) <= 0.15 + 1e-3
+    lowest = recorded.box_position[[0, -1], 2].min() if mass > 0.0 else 0.0
+    assert motion.point('hand_r')[:, 2].min() >= lowest - 2e-3
     rear, front = result.predicted.support
     assert rear - 1e-3 <= result.predicted.zmp.min()
     assert result.predicted.zmp.max() <= front + 1e-3

@@ -15,7 +15,7 @@ from human_model.strength import JointStrength, coefficient_sets
 from human_model.subject import Subject
 from lift_predictor.core.exceptions import TaskError
 from lift_predictor.core.sagittal.evaluation import SagittalLoads, evaluate
-from lift_predictor.core.sagittal.grid import CENTRES, NODE_ROWS
+from lift_predictor.core.sagittal.grid import CENTRES, HAND_SCALE, NODE_ROWS
 from lift_predictor.core.sagittal.kinematics import chain_positions, pelvis_motion
 from lift_predictor.core.sagittal.node_functions import node_functions
 from lift_predictor.core.sagittal.parameters import JOINTS, LiftParameters
@@ -160,7 +160,7 @@ def test_clearance_row_is_the_distance_of_box_and_circle(
 ) -> None:
     gaps = chain_positions(motion[0], parameters).gaps
     first = NODE_ROWS.index('collision (4.5) of the box with the shank')
-    rows = loads.rows[:, first:]
+    rows = loads.rows[:, first : first + len(parameters.circle)]
     used = parameters.circle[:, 2] > 0.0
     reach = (parameters.circle[:, 2] + parameters.box_radius)[used]
     np.testing.assert_allclose(
@@ -169,10 +169,17 @@ def test_clearance_row_is_the_distance_of_box_and_circle(
     np.testing.assert_array_equal(rows[:, ~used], 1.0)
 
 
+def test_height_row_is_the_grip_over_its_lowest_place(parameters: LiftParameters, motion) -> None:
+    rows = evaluate(REPORT, *motion, replace(parameters, lowest_grip=0.3)).rows
+    hand = chain_positions(motion[0], parameters).joints['hand'][:, 1]
+    at = NODE_ROWS.index('height of the box over the lower of its places')
+    np.testing.assert_allclose(rows[:, at] * HAND_SCALE, hand - 0.3, atol=1e-12)
+
+
 def test_circle_switched_off_does_not_constrain(parameters: LiftParameters, motion) -> None:
     off = replace(parameters, circle=np.zeros_like(parameters.circle))
     rows = evaluate(REPORT, *motion, off).rows
-    np.testing.assert_array_equal(rows[:, 8:], 1.0)
+    np.testing.assert_array_equal(rows[:, 8 : 8 + len(off.circle)], 1.0)
     assert np.all(np.isinf(chain_positions(motion[0], off).gaps))
 
 
@@ -205,6 +212,7 @@ def test_published_link_table_can_be_used(motion) -> None:
         box_mass=20.0,
         box_radius=0.1,
         box_from_hand=np.zeros(2),
+        lowest_grip=0.0,
     )
     torque = evaluate(REPORT, *motion, parameters).torque
     spine, hip = JOINTS.index('lumbar_extension'), JOINTS.index('hip_flexion')

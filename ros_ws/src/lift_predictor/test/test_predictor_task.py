@@ -13,7 +13,12 @@ from human_model.motion import Lift
 from lift_predictor.core.exceptions import AsymmetricLiftError, TaskError, UnreachableError
 from lift_predictor.core.sagittal.kinematics import chain_positions, reach
 from lift_predictor.core.sagittal.parameters import JOINTS
-from lift_predictor.core.sagittal.task import POSTURE_TOLERANCE, Box, build_task
+from lift_predictor.core.sagittal.task import (
+    PLACE_ALLOWANCE,
+    POSTURE_TOLERANCE,
+    Box,
+    build_task,
+)
 
 BOX = Box(mass=7.0, depth=0.238)
 
@@ -163,3 +168,18 @@ def test_reach_finds_the_nearest_posture(parameters, person) -> None:
         found, distance = reach(grip, posture, low, high, parameters)
         assert distance < 1e-4
         assert np.all((found >= low) & (found <= high))
+
+
+def test_the_box_is_not_carried_below_the_lower_of_its_places(person, make_lift) -> None:
+    lift = make_lift(7.0)
+    task = build_task(person, lift, Box(7.0, 0.238))
+    lower = lift.motion.box_position[[0, -1], 2].min()
+    assert task.parameters.lowest_grip == pytest.approx(lower - PLACE_ALLOWANCE, abs=1e-6)
+    place = np.array([*lift.motion.box_position[0, :2], lower + 0.05])
+    higher = build_task(person, lift, Box(7.0, 0.238, start=place))
+    assert higher.parameters.lowest_grip == pytest.approx(lower + 0.05 - PLACE_ALLOWANCE, abs=1e-6)
+
+
+def test_empty_hands_may_go_down_to_the_floor(person, make_lift) -> None:
+    task = build_task(person, make_lift(0.0), Box(0.0))
+    assert task.parameters.lowest_grip == pytest.approx(task.parameters.ground_height)

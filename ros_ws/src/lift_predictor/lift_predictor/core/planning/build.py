@@ -20,7 +20,7 @@ from lift_predictor.core.sagittal.parameters import N_JOINTS, LiftParameters
 from lift_predictor.core.sagittal.person import Person
 from lift_predictor.core.sagittal.plane import SagittalPlane
 from lift_predictor.core.sagittal.starts import make_starts
-from lift_predictor.core.sagittal.task import POSTURE_TOLERANCE, LiftTask2D
+from lift_predictor.core.sagittal.task import POSTURE_TOLERANCE, LiftTask2D, lowest_grip
 from lift_predictor.core.solvers.optimum import Start
 
 Array = NDArray[np.float64]
@@ -100,12 +100,7 @@ def build_plan(
             f'sagittal model allows {np.degrees(LATERAL_TOLERANCE):.0f} deg'
         )
     parameters = plan_parameters(person, task, ankle)
-    hand = np.array(
-        [
-            (x - task.box_from_grip[0], z - task.box_from_grip[1])
-            for x, _, z in (task.start, task.end)
-        ]
-    )
+    hand = _grips(task)
     style = technique(task.technique)
     guesses = (*LOW_GUESSES, *HIGH_GUESSES)
     first = find_postures('start', guesses, hand[0], person, parameters, style)
@@ -149,7 +144,14 @@ def plan_parameters(person: Person, task: PlanTask, ankle: float) -> LiftParamet
         box_mass=0.0 if task.box_mass is None else task.box_mass,
         box_radius=0.5 * task.box_size[0],
         box_from_hand=np.array(task.box_from_grip),
+        lowest_grip=lowest_grip(_grips(task)),
     )
+
+
+def _grips(task: PlanTask) -> Array:
+    """Grip at start and end, shape (2, 2), forward and up [m]."""
+    forward, up = task.box_from_grip
+    return np.array([(x - forward, z - up) for x, _, z in (task.start, task.end)])
 
 
 def _pairs(first: tuple[Posture, ...], last: tuple[Posture, ...]) -> tuple[Array, ...]:

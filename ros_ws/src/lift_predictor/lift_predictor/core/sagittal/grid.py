@@ -35,6 +35,7 @@ NODE_ROWS: Final = (
         for body in CIRCLE_BODIES
         for _ in range(CIRCLES_PER_BODY)
     ),
+    'height of the box over the lower of its places',
 )
 NODE_UPPER: Final = (1.0,) * N_JOINTS + (float('inf'),) * (len(NODE_ROWS) - N_JOINTS)
 """Upper bounds of the node rows; all lower bounds are 0."""

@@ -8,7 +8,13 @@ from typing import Any
 
 import casadi as ca
 
-from lift_predictor.core.sagittal.grid import CENTRES, N_NODE, NODE_ROWS, REPORT_OUTPUTS
+from lift_predictor.core.sagittal.grid import (
+    CENTRES,
+    HAND_SCALE,
+    N_NODE,
+    NODE_ROWS,
+    REPORT_OUTPUTS,
+)
 from lift_predictor.core.sagittal.model import chain_state, torque_limits
 from lift_predictor.core.sagittal.parameters import (
     BODIES,
@@ -35,7 +41,7 @@ def node_functions() -> dict[str, Any]:
     Effort is the integrand of the first term of equation 2.11, over the six joints above the feet
     (no strength of the metatarsophalangeal joint is published). Rows are scaled to order 1:
     torques are 0 at the lower and 1 at the upper dynamic limit, balance is divided by weight times
-    foot length, collision by the squared sum of the radii.
+    foot length, collision by the squared sum of the radii, height by `HAND_SCALE`.
     """
     p = ca.SX.sym('p', N_PARAMETERS)
     z = ca.SX.sym('z', N_NODE)
@@ -106,6 +112,7 @@ def _instant(q: Any, dq: Any, ddq: Any, s: Any, p: Any) -> dict[str, Any]:
             (state.ground_moment - rear * vertical) / scale,
             (front * vertical - state.ground_moment) / scale,
             state.clearance,
+            (state.position['hand'][1] - blocks['lowest_grip'][0][0]) / HAND_SCALE,
         ),
         'centres': ca.vertcat(*(state.position[name] for name in CENTRES)),
         'segment_angle': ca.vertcat(*(state.angle[name][0] for name in BODIES)),

@@ -49,6 +49,7 @@ SHAPES: Final[dict[str, tuple[int, int]]] = {
     'duration': (1, 1),
     'box_radius': (1, 1),
     'box_from_hand': (1, 2),
+    'lowest_grip': (1, 1),
     'objective': (1, 2),
 }
 N_SCALARS: Final = 1
@@ -88,6 +89,8 @@ class LiftParameters:
         Half depth of the box [m] (r2 of equation 4.5).
     box_from_hand : array, shape (2,)
         Box centre minus grip [m]; the box stays level.
+    lowest_grip : float
+        Height below which the grip may not go [m]: the box stands on something where it is lower.
     objective : array, shape (2,)
         Factors a and b of the objective a effort - b log(W + 10) (equation 2.11 with weights and
         normalisation multiplied); the default is the effort alone.
@@ -105,6 +108,7 @@ class LiftParameters:
     box_mass: float
     box_radius: float
     box_from_hand: Array
+    lowest_grip: float
     objective: Array = field(default_factory=lambda: np.array([1.0, 0.0]))
 
     def pack(self) -> Array:

@@ -23,6 +23,9 @@ Array = NDArray[np.float64]
 
 POSTURE_TOLERANCE: Final = 0.15
 """Epsilon of equation 4.8 [rad]."""
+PLACE_ALLOWANCE: Final = 1e-3
+"""How far below the lower of its places the box may be carried [m]: what motion capture resolves;
+without it there would be no inside of the feasible set where the box stands at an end."""
 INSTANTS: Final = ('start', 'middle', 'end')
 
 
@@ -147,6 +150,7 @@ def build_task(
         box_mass=box.mass,
         box_radius=0.5 * box.depth,
         box_from_hand=from_hand,
+        lowest_grip=float(ankle[1] - person.ankle_height),
     )
     parameters, notes = _fit_circles(parameters, measured)
     postures = np.stack([np.interp(instants, measured.time, column) for column in measured.q.T], 1)
@@ -155,11 +159,21 @@ def build_task(
         if place is not None:
             asked = plane.into(np.asarray(place, dtype=float)) - from_hand
             hand[row] += share * (asked - hand[row])
+    if box.mass > 0.0 or box.depth > 0.0:
+        parameters = replace(parameters, lowest_grip=lowest_grip(hand))
     bounds = _bounds(person, postures, tolerance, hand, box.mass)
     ends = _reachable_ends(bounds, postures, parameters)
     return LiftTask2D(
         lift.lift_id, lift.start, person, plane, measured, parameters, bounds, ends, notes
     )
+
+
+def lowest_grip(hand: Array) -> float:
+    """Return the least height of the grip for places at start and end (2, 2) [m].
+
+    The box stands on something at the lower of its places, and is not carried below it.
+    """
+    return float(hand[:, 1].min() - PLACE_ALLOWANCE)
 
 
 def _at(measured: SagittalMotion, values: Array, time: float) -> Array:

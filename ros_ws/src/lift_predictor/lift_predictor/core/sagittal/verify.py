@@ -26,6 +26,7 @@ TOLERANCE: Final[dict[str, float]] = {
     'joint_torque [N m]': 0.5,
     'balance [m]': 1e-3,
     'collision [m]': 1e-3,
+    'height [m]': 1e-3,
     'hand_position [m]': 1e-4,
     'static_ends [rad/s]': 1e-6,
     'posture [rad]': 1e-3,
@@ -100,6 +101,7 @@ def verify(
     balance = np.maximum(rear - loads.zmp, loads.zmp - front)
     lifted_off = loads.ground_force[:, 1] <= 0.0
     balance[lifted_off] = np.inf
+    height = parameters.lowest_grip - loads.centres[:, -1, 1]
     middle = len(s) // 2
     posture = np.maximum(
         bounds.posture_lower - q[[0, middle, -1]], q[[0, middle, -1]] - bounds.posture_upper
@@ -111,6 +113,7 @@ def verify(
         'joint_torque [N m]': (torque, JOINTS, s),
         'balance [m]': (balance[:, None], ('zero-moment point',), s),
         'collision [m]': (-gaps, tuple(f'circle {i + 1}' for i in range(gaps.shape[1])), s),
+        'height [m]': (height[:, None], ('grip',), s),
         'hand_position [m]': (hands[:, None], ('grip',), s[[0, -1]]),
         'static_ends [rad/s]': (np.abs(dq[[0, -1]]), JOINTS, s[[0, -1]]),
         'posture [rad]': (posture, JOINTS, s[[0, middle, -1]]),
