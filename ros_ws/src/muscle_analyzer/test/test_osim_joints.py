@@ -169,8 +169,9 @@ def test_custom_joint_with_oblique_axes_and_functions(tmp_path):
         ('<NaturalCubicSpline><x>0 1 2 3</x><y>0 1 8 27</y></NaturalCubicSpline>', 0.125),
         ('<natCubicSpline><x>0 1 2 3</x><y>0 1 8 27</y></natCubicSpline>', 0.125),
         (
-            '<StepFunction><start_time>0</start_time><end_time>1</end_time><start_value>0'
-            '</start_value><end_value>3</end_value></StepFunction>',
+            '<StepFunction><transition_start_time>0</transition_start_time><transition_end_time>1'
+            '</transition_end_time><start_value>0</start_value><end_value>3</end_value>'
+            '</StepFunction>',
             1.5,
         ),
         (

@@ -4,11 +4,11 @@
 Path of a muscle over an ellipsoid, compiled.
 
 As in OpenSim's ``WrapEllipsoid`` a segment wraps when it pierces the ellipsoid, and its path lies
-in a plane through its ends and one point of the surface, the *guide*.  OpenSim's 'axial' method
-takes the guide from where the segment crosses the coordinate plane most normal to it, 'midpoint'
-from the middle of the pierced part.  'hybrid' is as 'axial', or, if no axis is nearly parallel to
-the segment, takes the mean direction to the surface along the segment, and blends between the two.
-A guide on the passive half is mirrored.
+in a plane through its ends and one point of the surface, the *guide*.  OpenSim's 'hybrid' method
+takes the guide from where the segment crosses the coordinate plane most normal to it, or, if no
+axis is nearly parallel to the segment, from the mean direction to the surface along the segment,
+and blends between the two; 'midpoint' takes it from the middle of the pierced part.  A guide on
+the passive half is mirrored.
 
 Here the tangent points are found in closed form: divided by its half axes the ellipsoid is a unit
 sphere, its section a circle, and lines tangent to the one stay tangent to the other.
@@ -31,7 +31,7 @@ Index = int | np.int64
 #: the crossing loses its weight (constants of OpenSim's hybrid method).
 PARALLEL_NONE, PARALLEL_FULL, END_SHARE = 0.7073, 0.9, 0.3
 #: Methods of choosing the guide.
-HYBRID, MIDPOINT, AXIAL = 0, 1, 2
+HYBRID, MIDPOINT = 0, 1
 #: Nodes and weights of the mean direction, for each part of the chord between coordinate planes
 #: (where the closest point may jump).  OpenSim takes 298 evenly spaced samples instead.
 _RAW_NODES, _RAW_WEIGHTS = np.polynomial.legendre.leggauss(6)
@@ -163,7 +163,7 @@ def _guide(
         for i in range(3):
             point[i] = 0.5 * (enter[i] + leave[i])
         closest_on_ellipsoid(axes, point, none, guide)
-    elif method == AXIAL or fan < 1.0:
+    elif fan < 1.0:
         for i in range(3):
             point[i] = enter[i] + crossing * (leave[i] - enter[i])
         closest_on_ellipsoid(axes, point, best, guide)
@@ -199,7 +199,7 @@ def wrap_ellipsoid(
     """
     Wrap one segment over an ellipsoid; arguments and results as `wrap_cylinder`.
 
-    `axes` are the half axes along x, y and z [m], `method` is `HYBRID`, `MIDPOINT` or `AXIAL`.
+    `axes` are the half axes along x, y and z [m], `method` is `HYBRID` or `MIDPOINT`.
     """
     # In units of the half axes the ellipsoid is the unit sphere.
     a, b, along = np.empty(3), np.empty(3), np.empty(3)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from muscle_analyzer.core.ellipsoid_wrapping import AXIAL, HYBRID, MIDPOINT
+from muscle_analyzer.core.ellipsoid_wrapping import HYBRID, MIDPOINT
 from muscle_analyzer.core.exceptions import OsimFormatError, UnsupportedElementError
 from muscle_analyzer.core.functions import FunctionTable, function_table
 from muscle_analyzer.core.multibody import MultibodyModel
@@ -21,7 +21,7 @@ IntArray = NDArray[np.int64]
 #: Kinds of wrap object the path functions know.
 CYLINDER, ELLIPSOID, SPHERE, TORUS = 0, 1, 2, 3
 _KINDS = {'cylinder': CYLINDER, 'ellipsoid': ELLIPSOID, 'sphere': SPHERE, 'torus': TORUS}
-_METHODS = {'hybrid': HYBRID, 'midpoint': MIDPOINT, 'axial': AXIAL}
+_METHODS = {'hybrid': HYBRID, 'midpoint': MIDPOINT}
 #: A conditional point is there up to so far outside its range (constant of OpenSim), rad or m.
 CONDITION_MARGIN = 1e-5
 #: Active halves of a wrap object: coordinate and sign; sign 0 is the whole surface.
@@ -226,8 +226,12 @@ def _wrap_row(
         raise UnsupportedElementError(f'{where}: kind {surface.kind} is not modelled')
     if surface.quadrant not in _HALVES:
         raise UnsupportedElementError(f'{where}: quadrant {surface.quadrant} is not modelled')
-    if use.method not in _METHODS:
-        raise UnsupportedElementError(f'{where}: method {use.method} is not modelled')
+    # Only ellipsoids heed the method.
+    method = use.method if surface.kind == 'ellipsoid' else 'hybrid'
+    if method not in _METHODS or (method == 'midpoint' and surface.quadrant != 'all'):
+        raise UnsupportedElementError(
+            f'{where}: method {method} on quadrant {surface.quadrant} is not modelled'
+        )
     dimensions = np.zeros(3)
     dimensions[: len(surface.dimensions)] = surface.dimensions
     first, last = use.range
@@ -239,7 +243,7 @@ def _wrap_row(
         surface.frame.translation,
         dimensions,
         _HALVES[surface.quadrant],
-        _METHODS[use.method],
+        _METHODS[method],
         first - 1 if first >= 1 else 0,
         last - 1 if last >= 1 else len(muscle.points) - 1,
     )

@@ -173,8 +173,8 @@ class OsimXml:
                     )
                 case 'step':
                     return functions.smooth_step(
-                        *(self.number(element, f'{end}_time') for end in ('start', 'end')),
-                        *(self.number(element, f'{end}_value') for end in ('start', 'end')),
+                        *(self.number(element, f'transition_{end}_time') for end in _ENDS),
+                        *(self.number(element, f'{end}_value') for end in _ENDS),
                     )
                 case _:
                     return self.function(element).scaled(self.number(element, 'scale'))
@@ -184,6 +184,7 @@ class OsimXml:
             raise OsimFormatError(f'{self.where(element)}: {error}') from error
 
 
+_ENDS = ('start', 'end')
 _FUNCTIONS = {
     'Constant': 'constant',
     'LinearFunction': 'linear',

@@ -76,20 +76,28 @@ def _apex_heights(
 
 @njit(cache=True, error_model='numpy')
 def _cylinder_sense(
-    angles: tuple[float, float, float, float], radius: float, axis: int, sign: int
+    angles: tuple[float, float, float, float],
+    radius: float,
+    axis: int,
+    sign: int,
+    heights: tuple[float, float],
 ) -> int:
     """
     Choose the way round that uses the active half of a cylinder.
 
     `angles` are those of the tangent points: of the first end counter-clockwise and clockwise of
     it, then of the second end.  The path runs counter-clockwise from the first to the fourth, or
-    clockwise from the second to the third.
+    clockwise from the second to the third.  Of a half along the axis only the `heights` of the
+    ends tell whether tangent points are on it.
     """
     turn = 0.5 * math.pi if axis == 1 else 0.0
     first_left = radius * math.cos(angles[0] - turn) * sign > 0.0
     first_right = radius * math.cos(angles[1] - turn) * sign > 0.0
     second_left = radius * math.cos(angles[2] - turn) * sign > 0.0
     second_right = radius * math.cos(angles[3] - turn) * sign > 0.0
+    if axis == 2:
+        first_left = first_right = heights[0] * sign > 0.0
+        second_left = second_right = heights[1] * sign > 0.0
     if first_left != first_right:
         return 1 if first_left else -1
     if first_left:
@@ -169,11 +177,6 @@ def wrap_cylinder(
     to_tangent_2 = math.acos(min(1.0, radius / from_axis_2))
     if sign == 0:
         sense = 1 if x1 * y2 - y1 * x2 > 0.0 else -1
-    elif axis == 2:
-        # A half along the axis does not choose a way round.
-        if first[2] * sign <= 0.0 and second[2] * sign <= 0.0:
-            return MISSED, 0.0
-        sense = 1 if x1 * y2 - y1 * x2 > 0.0 else -1
     else:
         sense = _cylinder_sense(
             (
@@ -185,6 +188,7 @@ def wrap_cylinder(
             radius,
             axis,
             sign,
+            (first[2], second[2]),
         )
     difference = angle_2 - angle_1
     between = to_tangent_1 + to_tangent_2
