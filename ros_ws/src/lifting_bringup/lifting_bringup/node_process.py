@@ -20,7 +20,7 @@ NODES = ('muscle_analyzer', 'lift_predictor', 'motion_tracker', 'injury_monitor'
 
 #: Parameters of the nodes of a graph that plays a recording. A stream that the recording has will
 #: come, however busy the machine is: the tracker waits for it longer than for a live one.
-PARAMETERS: dict[str, dict[str, object]] = {'motion_tracker': {'wait': 10.0}}
+PARAMETERS: dict[str, dict[str, object]] = {'motion_tracker': {'wait': 60.0}}
 
 #: Profile of Fast DDS with which processes that start together find each other at once.
 DISCOVERY_PROFILE = Path(__file__).with_name('data') / 'fast_dds.xml'

@@ -180,6 +180,8 @@ def run_online(
         stack.callback(node.destroy_node)
         executor = EventsExecutor()
         stack.callback(executor.shutdown)
+        # The processes end before this one's node does, whatever happens to that.
+        stack.callback(_stop, [*helpers, *processes])
         executor.add_node(node)
         graph = Graph(node, executor, options.station, processes, say)
         say('starting the graph: muscle_analyzer, lift_predictor, motion_tracker, injury_monitor')
