@@ -100,8 +100,8 @@ def surfaces() -> dict[str, tuple[str, str]]:
             for method in methods if half == 'all' else methods[:1]:
                 name = f'{kind}_{method}_{half}'
                 text = f"""<{tag} name="{name}"><active>true</active>
-<xyz_body_rotation>1.3 0.2 -0.1</xyz_body_rotation><translation>0.01 0.15 -0.02</translation><quadrant>{half}</quadrant>{size}
-</{tag}>"""
+<xyz_body_rotation>1.3 0.2 -0.1</xyz_body_rotation><translation>0.01 0.15 -0.02</translation>
+<quadrant>{half}</quadrant>{size}</{tag}>"""
                 found[name] = text, method
     return found
 
