@@ -175,6 +175,20 @@ def test_offset_frames_without_offset_and_relative_sockets(write_model):
     assert model.markers[0].body == 'lower'
 
 
+def test_places_and_angles_that_are_not_given_are_zero(write_model):
+    """As in OpenSim, which does not write what it was never told."""
+    model = read_osim(
+        write_model(
+            ('<mass_center>0 -0.15 0</mass_center>', ''),
+            ('<default_value>0</default_value>', ''),
+            ('<pennation_angle_at_optimal>0.1</pennation_angle_at_optimal>', ''),
+        )
+    )
+    np.testing.assert_array_equal(model.body('upper').mass_center, np.zeros(3))
+    assert model.joint('elbow').coordinates[0].default_value == 0.0
+    assert model.muscles[0].pennation_angle == 0.0
+
+
 def test_missing_file_is_named(tmp_path):
     with pytest.raises(OsimFormatError, match=r'nothing\.osim'):
         read_osim(tmp_path / 'nothing.osim')

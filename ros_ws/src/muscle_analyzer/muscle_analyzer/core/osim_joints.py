@@ -71,7 +71,7 @@ def _read_coordinate(xml: OsimXml, element: Element) -> Coordinate:
         raise OsimFormatError(f'{xml.where(element)} <range>: {low} > {high}')
     return Coordinate(
         name=xml.name(element),
-        default_value=xml.number(element, 'default_value'),
+        default_value=float(xml.vector(element, 'default_value', [0.0])[0]),
         range=(float(low), float(high)),
         clamped=xml.flag(element, 'clamped', False),
         locked=xml.flag(element, 'locked', False),

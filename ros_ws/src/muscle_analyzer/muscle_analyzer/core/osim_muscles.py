@@ -59,7 +59,7 @@ def read_muscle(xml: OsimXml, frames: FrameResolver, element: Element) -> Muscle
     return Muscle(
         name=xml.name(element),
         kind=element.tag,
-        pennation_angle=xml.number(element, 'pennation_angle_at_optimal'),
+        pennation_angle=float(xml.vector(element, 'pennation_angle_at_optimal', [0.0])[0]),
         points=points,
         wraps=tuple(_read_path_wrap(xml, w) for w in xml.objects('PathWrapSet', path)),
         properties=_read_properties(xml, element),

@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads a musculoskeletal model from an `.osim` file of OpenSim 4.x or 3.0 to 3.3.
 
-What the file says is kept; what would change a result and is not modelled raises an error that
-names the element; what is deliberately not part of the model (contact surfaces, actuators,
-controllers) is listed in `OsimModel.left_out`.
+What the file says is kept; where it says nothing about a place, an angle or a default value,
+OpenSim's own default holds, which is zero. What would change a result and is not modelled raises
+an error that names the element; what is deliberately not part of the model (contact surfaces,
+actuators, controllers) is listed in `OsimModel.left_out`.
 """
 
 from __future__ import annotations
@@ -107,7 +108,7 @@ def _read_body(xml: OsimXml, element: Element) -> Body:
     return Body(
         name=xml.name(element),
         mass=mass,
-        mass_center=xml.numbers(element, 'mass_center', 3),
+        mass_center=xml.vector(element, 'mass_center', np.zeros(3)),
         inertia=np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]),
     )
 
