@@ -130,7 +130,7 @@ class DaskScheduler:
     """
 
     def __init__(
-        self, address: str, timeout: float = 20.0, function: Solve = solve_case
+        self, address: str, timeout: float = 10.0, function: Solve = solve_case
     ) -> None:
         self._address, self._function = address, function
         try:
@@ -169,7 +169,7 @@ class DaskScheduler:
             return future
 
         first = [future for _ in range(AHEAD * self.workers) if (future := submit())]
-        stream = _distributed().as_completed(first)
+        stream = _distributed().as_completed(first, loop=self._client.loop)
         for future in stream:
             case = by_key.pop(future.key)
             if future.status == 'finished':
