@@ -33,6 +33,7 @@ from lift_predictor.core.sagittal.lift_motion import body_motion, mtp_torque, sa
 from lift_predictor.core.sagittal.optimiser import LiftOptimiser
 from lift_predictor.core.sagittal.person import COEFFICIENT_SET, Person
 from lift_predictor.core.sagittal.prediction import TORQUE_NAMES, NearestLift, PredictedLift2D
+from lift_predictor.core.sagittal.solved_lifts import library_starts
 from lift_predictor.core.sagittal.starts import make_starts
 from lift_predictor.core.sagittal.task import POSTURE_TOLERANCE, Box, LiftTask2D, build_task
 from lift_predictor.core.sagittal.verify import Verification, verify
@@ -49,7 +50,8 @@ INFEASIBLE: Final = (Status.INFEASIBLE, 'Infeasible_Problem_Detected')
 """In our solver's words and in IPOPT's."""
 
 MARGIN_FACTOR: Final = 1.05
-"""Margin against a violation between the nodes, in units of the violation."""
+"""First margin against a violation between the nodes, in units of the violation; twice as much
+each time that it does not suffice."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +82,7 @@ class PredictorOptions:
     posture_tolerance: float = POSTURE_TOLERANCE
     coefficient_set: str = COEFFICIENT_SET
     time_limit: float = 10.0
-    refinements: int = 3
+    refinements: int = 6
     dimension: str = 'auto'
 
     @property
@@ -91,7 +93,7 @@ class PredictorOptions:
             n_nodes=self.n_nodes,
             coefficient_set=self.coefficient_set,
             time_limit=max(self.time_limit, SpatialOptions.time_limit),
-            refinements=self.refinements,
+            refinements=max(self.refinements, SpatialOptions.refinements),
         )
 
 
@@ -278,6 +280,8 @@ class LiftPredictor:
         build_time = time.perf_counter() - begin
         deadline = begin + self.options.time_limit
         vector = task.parameters.pack()
+        if task.measured is None:
+            starts = (*starts, *library_starts(self.programme.grid.spline))
         optima = self.programme.solve_all(vector, task.bounds, starts, deadline, progress)
         optima, check = self._tighten(task, vector, optima, deadline)
         status, message = _judge(optima[0], check)
@@ -316,7 +320,8 @@ class LiftPredictor:
             if check.passed or late:
                 break
             margin = 0.0 if bounds.margin is None else bounds.margin
-            bounds = replace(bounds, margin=margin + MARGIN_FACTOR * check.excess)
+            factor = MARGIN_FACTOR * 2.0**attempt
+            bounds = replace(bounds, margin=margin + factor * check.excess)
             again = self.programme.solve(vector, bounds, best.as_start())
             if not again.converged:
                 optima = (best, again, *optima[1:])

@@ -5,8 +5,8 @@
 The inputs are divided into sets. Columns of the Jacobian and Hessian are directional derivatives
 (of the function, and of the gradient of its Lagrangian), one code for all directions of a set that
 runs once for each. What does not depend on the direction is computed once for all sweeps, and a
-set that touches little of the function (accelerations) has little code. A sweep of the Hessian leaves
-out the rows of earlier sets, which symmetry gives.
+set that touches little of the function (accelerations) has little code. A sweep of the Hessian
+leaves out the rows of earlier sets, which symmetry gives.
 """
 
 from __future__ import annotations

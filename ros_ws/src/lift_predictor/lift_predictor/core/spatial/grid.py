@@ -29,7 +29,7 @@ N_NODE: Final = 3 * N_SPLINED
 
 _SIDES: Final = ('right', 'left')
 TORQUE_ROWS: Final = tuple(f'joint torque limit (4.2) of {joint}' for joint in STRONG)
-ANGLE_ROWS: Final = tuple(f'joint angle limit (4.1) of {joint}' for joint in DEPENDENT)
+ANGLE_ROWS: Final = tuple(f'joint angle (4.1, 3.15) of {joint}' for joint in DEPENDENT)
 GROUND_ROWS: Final = (
     'balance (4.3) between heels and tips of the toes',
     *(f'vertical ground reaction of the {side} foot' for side in _SIDES),
@@ -41,8 +41,8 @@ NODE_ROWS: Final = (
     *TORQUE_ROWS, *ANGLE_ROWS, *GROUND_ROWS, *COLLISION_ROWS, *SECTOR_ROWS, *HAND_ROWS,
 )  # fmt: skip
 """Rows of every node. Units: torques 0 at the lower and 1 at the upper dynamic limit; angles
-[rad]; balance 0 at the heels, 1 at the tips of the toes; ground reactions per body weight; collision
-squared distance per squared sum of radii, less 1; sector and hands `HAND_SCALE`."""
+[rad]; balance 0 at the heels, 1 at the tips of the toes; ground reactions per body weight;
+collision squared distance per squared sum of radii, less 1; sector and hands `HAND_SCALE`."""
 
 LIMITED: Final = SPLINED[4:]
 """Splined coordinates with joint limits: knees, spine, arms."""
@@ -134,7 +134,7 @@ class SpatialGrid:
         percent = [f'{100 * s:.0f} % of the lift' for s in self.times]
         return (
             *(f'{row} at {when}' for when in percent for row in NODE_ROWS),
-            *(f'joint angle limit (4.1) of {j} at {when}' for when in percent for j in LIMITED),
+            *(f'joint angle (4.1, 3.15) of {j} at {when}' for when in percent for j in LIMITED),
             *(
                 f'{side} hand (3.13) {axis} at the {end}'
                 for end in ('start', 'end')

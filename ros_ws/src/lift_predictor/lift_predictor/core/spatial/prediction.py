@@ -69,6 +69,8 @@ class PredictedLift3D:
         Dense-grid check.
     notes : tuple of str
         Adaptations of the task, and how the functions were run.
+    nearest : PredictedLift3D or None
+        The heaviest feasible lift, where the task is infeasible and there is one.
     """
 
     lift_id: str
@@ -86,6 +88,7 @@ class PredictedLift3D:
     optima: tuple[SpatialOptimum, ...]
     verification: SpatialVerification | None
     notes: tuple[str, ...]
+    nearest: PredictedLift3D | None = None
 
     @property
     def control(self) -> Array:

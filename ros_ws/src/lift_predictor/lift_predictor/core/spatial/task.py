@@ -403,3 +403,11 @@ def _windows(
     return replace(
         bounds, node_lower=node[0], node_upper=node[1], angle_lower=angle[0], angle_upper=angle[1]
     )
+
+
+def without_ground_windows(task: SpatialTask) -> SpatialTask:
+    """Task whose feet may carry any load (no 3.16, 5.1), as with another weight in the hands."""
+    part = slice(row_slice(GROUND_ROWS).start + 1, row_slice(GROUND_ROWS).stop)
+    lower, upper = task.bounds.node_lower.copy(), task.bounds.node_upper.copy()
+    lower[:, part], upper[:, part] = 0.0, np.inf
+    return replace(task, bounds=replace(task.bounds, node_lower=lower, node_upper=upper))

@@ -54,6 +54,8 @@ TOLERANCE: Final[dict[str, float]] = {
 }
 """Largest violation that passes: what motion capture and force plates resolve (1 mm, 0.06 deg, 0.5
 N m, 1 N); 2 mm for the grip, which gives by more than that."""
+ELSEWHERE: Final = 0.5
+"""Part of the largest excess of a row that becomes a margin at its other nodes."""
 FEET: Final = ('right foot', 'left foot')
 
 
@@ -96,14 +98,16 @@ class SpatialVerification:
     def tightened(self, bounds: SpatialBounds, factor: float) -> SpatialBounds:
         """Bounds with a margin of a factor times the excess at each node.
 
-        A margin is at most a quarter of what is left between two bounds, so that there is always
-        an inside.
+        A part of the largest excess of a row goes to all other nodes, as the next solution may
+        leave its bounds elsewhere. A margin is at most a quarter of what is left between two
+        bounds, so that there is always an inside.
         """
 
         def narrow(low: Array, high: Array, excess: Array) -> tuple[Array, Array]:
             with np.errstate(invalid='ignore'):
                 room = 0.25 * (high - low)
-            least, most = (np.minimum(factor * part, room) for part in excess)
+            spread = np.maximum(excess, ELSEWHERE * excess.max(axis=1, keepdims=True))
+            least, most = (np.minimum(factor * part, room) for part in spread)
             return low + least, high - most
 
         node = narrow(bounds.node_lower, bounds.node_upper, self.node_excess)
