@@ -27,12 +27,15 @@ Progress = Callable[[int, int, float], None]
 class Start:
     """Named initial guess: free control values, shape (n_free, 6) [rad], and box mass [kg].
 
-    The mass is moved into its bounds, and so needs no value where the weight is given.
+    The mass is moved into its bounds, and so needs no value where the weight is given. A start
+    that is near a minimum (it solves a similar lift) is not led away from it: the interior-point
+    method begins with a small barrier there.
     """
 
     name: str
     control: Array
     box_mass: float = 0.0
+    near: bool = False
 
 
 @dataclass(frozen=True)
@@ -83,7 +86,7 @@ class Optimum:
 
     def as_start(self) -> Start:
         """Use the end of this run as a start."""
-        return Start(self.start, self.control, self.box_mass)
+        return Start(self.start, self.control, self.box_mass, near=True)
 
 
 def best_first(runs: Sequence[Optimum]) -> tuple[Optimum, ...]:
