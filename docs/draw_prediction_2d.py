@@ -15,13 +15,13 @@ from typing import Final
 
 import matplotlib as mpl
 import numpy as np
-from bags.simulate.group import lifting_task, simulated_lift
+from bags.simulate.group import AGE, MASS, STATURE, lifting_task, simulated_lift
 from benchmarks.predictor_pareto import TASK, Study, study, task_box
 from docs.draw_figures import BLUE, GREY, ORANGE, STYLE, save
 from matplotlib.figure import Figure
 
 from human_model.motion import Lift
-from human_model.named_subjects import named_subject
+from human_model.subject import Subject
 from lift_predictor.core.maximum_weight import (
     MaximumWeight,
     Weighting,
@@ -56,9 +56,14 @@ class Validation:
     results: dict[str, MaximumWeight]
 
 
+def average_man() -> Subject:
+    """Return the man who stands beside the group: the means of section 2.4."""
+    return Subject('average man', 'male', MASS[0], STATURE[0], AGE[0])
+
+
 def validate(enumerate_too: bool) -> Validation:
-    """Find the strength of the man of section 4.3 and predict his heaviest box."""
-    subject = named_subject('thesis_ch4')
+    """Find the strength of the average man and predict his heaviest box."""
+    subject = average_man()
     predictor = LiftPredictor()
     predictor.configure(subject)
     lift = simulated_lift(subject, lifting_task(TASK))
@@ -204,7 +209,7 @@ def profiles(known: Validation) -> Figure:
 def maximum_task(known: Validation):
     """Return the task of the man's lift, which holds the recorded angles."""
     predictor = LiftPredictor()
-    predictor.configure(named_subject('thesis_ch4'))
+    predictor.configure(average_man())
     return maximum_weight_task(predictor, known.lift, task_box())
 
 

@@ -136,7 +136,7 @@ class StrengthSearch:
         return replace(self.task, parameters=parameters)
 
     def weight(self, z: float) -> float:
-        """Predict the maximum weight [N] with a z-score; NaN if there is no lift at all.
+        """Predict the maximum weight [N] with a z-score; NaN: no lift, or none that passes.
 
         Raises
         ------
@@ -144,16 +144,29 @@ class StrengthSearch:
             The prediction failed although the lift may be feasible.
         """
         if z not in self.tried:
-            self.tried[z] = solve_maximum_weight(
-                self.predictor, self.task_of(z), self._nearest_starts(z), self.weighting
-            )
+            near, task = self._nearest_starts(z), self.task_of(z)
+            found = solve_maximum_weight(self.predictor, task, near, self.weighting)
+            if not found.report.ok and near is not self._starts:
+                found = solve_maximum_weight(self.predictor, task, self._starts, self.weighting)
+            self.tried[z] = found
         report = self.tried[z].report
-        if not report.ok and report.status is not SolveStatus.PREDICTOR_INFEASIBLE:
+        if not report.ok and not self._too_weak(self.tried[z]):
             raise PercentileError(
                 f'strength_z = {z:g}: the maximum weight was not found '
                 f'({report.status.name}: {report.message})'
             )
         return self.tried[z].weight
+
+    def _too_weak(self, failed: MaximumWeight) -> bool:
+        """Tell whether a failed prediction means that less than the measured weight is lifted.
+
+        Next to infeasibility a lift may hold at the nodes and nowhere between: its weight at the
+        nodes is more than any that passes all checks.
+        """
+        if failed.report.status is SolveStatus.PREDICTOR_VERIFICATION_FAILED:
+            at_nodes = max(run.box_mass for run in failed.prediction.optima if run.converged)
+            return bool(at_nodes * self.task.parameters.gravity < self.measured)
+        return failed.report.status is SolveStatus.PREDICTOR_INFEASIBLE
 
     def _nearest_starts(self, z: float) -> tuple[Start, ...]:
         """Return the solved lift of the nearest z-score, or the starts of the task."""
