@@ -152,16 +152,22 @@ def test_forces_that_cost_more_are_told_apart_from_the_steps_after(box_lift, own
     force = own.answer.force.copy()
     for name in ('IL_L1_r', 'IL_L1_l', 'rect_abd_r', 'rect_abd_l'):
         force[:, own.side.muscle_names.index(name)] += 60.0
+    strength = np.array([m.max_isometric_force for m in own.motion.model.source.muscles])
     reaction = np.array(
         [own.side.reactions(int(k), row) for k, row in zip(own.rows, force, strict=True)]
     )
     result = compared(
-        box_lift, own, write_results(tmp_path, own, force=force, reaction=reaction)
+        box_lift,
+        own,
+        write_results(
+            tmp_path, own, force=force, activation=force / strength, reaction=reaction
+        ),
     )
     for instant in result.instants:
         assert instant.cost_equal_torques[0] < instant.cost_equal_torques[1]
         assert instant.compression[1] > instant.compression[0] + 100.0
     assert result.difference('muscle force').largest == pytest.approx(60.0)
+    assert result.difference('muscle strength').largest < 1e-6
     assert result.difference('muscle force, equal torques').largest > 10.0
     assert result.difference('force on L5-S1').largest > 100.0
     assert result.difference('force on L5-S1, equal muscle forces').largest < 1e-6
@@ -171,12 +177,14 @@ def test_forces_that_cost_more_are_told_apart_from_the_steps_after(box_lift, own
 def test_optimum_balances_the_torques_of_the_forces_that_it_is_given(own):
     """Forces and reserves of the smallest cost give the same torques; optimal ones stay."""
     side, answer = own.side, own.answer
-    smallest, given, forces = side.optimum(int(own.rows[0]), answer.force[0], answer.reserve[0])
+    k, activation = int(own.rows[0]), answer.activation[0]
+    smallest, given, forces = side.optimum(k, answer.force[0], activation, answer.reserve[0])
     assert smallest == pytest.approx(given, rel=1e-9)
     np.testing.assert_allclose(forces, answer.force[0], atol=1e-6)
     rng = np.random.default_rng(2)
-    other = answer.force[0] * rng.uniform(1.0, 1.3, answer.force[0].size)
-    smallest, given, forces = side.optimum(int(own.rows[0]), other, answer.reserve[0])
+    more = rng.uniform(1.0, 1.3, activation.size)
+    other = more * answer.force[0]
+    smallest, given, forces = side.optimum(k, other, more * activation, answer.reserve[0])
     assert smallest < given
     arm = answer.moment_arm[0]
     muscles = [k for k, r in enumerate(read_reserves(side.coordinate_names)) if r.muscle_driven]

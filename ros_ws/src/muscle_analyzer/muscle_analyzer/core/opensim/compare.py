@@ -164,8 +164,8 @@ def compare(
     mine, other = own.answer(rows), run.answer
     at = [f'{time:.3f} s' for time in splined.time[rows]]
     optima = [
-        own.optimum(int(k), force, reserve)
-        for k, force, reserve in zip(rows, other.force, other.reserve, strict=True)
+        own.optimum(int(k), *given)
+        for k, *given in zip(rows, other.force, other.activation, other.reserve, strict=True)
     ]
     equal = np.array(
         [own.reactions(int(k), force) for k, force in zip(rows, other.force, strict=True)]
@@ -191,6 +191,10 @@ def compare(
         *_torque_rows(splined, own_rates, other.torque, ', rates of the analysis')[:1],
         difference('path length', 'mm', _MM * mine.length, _MM * other.length, muscle),
         difference('moment arm', 'mm', _MM * mine.moment_arm, _MM * other.moment_arm, arm),
+        difference(
+            'muscle strength', 'N', mine.force / mine.activation, other.force / other.activation,
+            muscle,
+        ),
         difference('activation', '1', mine.activation, other.activation, muscle),
         difference('muscle force', 'N', mine.force, other.force, muscle),
         difference(

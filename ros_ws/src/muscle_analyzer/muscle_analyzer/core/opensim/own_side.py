@@ -19,7 +19,6 @@ from muscle_analyzer.core.inverse_dynamics import inverse_dynamics, wrench_at
 from muscle_analyzer.core.joint_reaction import joint_reactions
 from muscle_analyzer.core.kinematics import BodyState, body_jacobians, forward_kinematics
 from muscle_analyzer.core.load_solver import KNEES, L5, THORAX, LoadSolver
-from muscle_analyzer.core.muscle_curves import MuscleParameters, MuscleState
 from muscle_analyzer.core.muscle_path_table import path_table
 from muscle_analyzer.core.muscle_paths import MusclePaths, body_wrenches, muscle_paths
 from muscle_analyzer.core.opensim.answers import Answer
@@ -54,7 +53,6 @@ class OwnSide:
         names = motion.model.coordinate_names
         self._balanced = [names.index(name) for name in self.coordinate_names]
         self._table = path_table(motion.model, options.geodesic_wrapping)
-        self._muscles = MuscleParameters.of(motion.model.source.muscles)
 
     def torques(self) -> Array:
         """Return the torques (n, n_x) of all samples and tree coordinates, N m or N."""
@@ -102,12 +100,6 @@ class OwnSide:
         jacobian = body_jacobians(self.motion.model.tree, state)
         return muscle_paths(self._table, state.position, state.rotation, jacobian)
 
-    def _strength(self, k: int, paths: MusclePaths) -> MuscleState:
-        if not self._options.force_length_velocity:
-            return self._muscles.isometric()
-        speed = -paths.moment_arm @ self.motion.qd[k]
-        return self._muscles.state(paths.length, speed, self._options.passive_force)
-
     def reactions(self, k: int, force: Array) -> Array:
         """Return the reactions (n_b, 6) at all joints under given muscle forces (n_m,), N."""
         tree = self.motion.model.tree
@@ -120,36 +112,37 @@ class OwnSide:
             [wrench_at(w, p) for w, p in zip(about_ground, state.joint_position, strict=True)]
         )
 
-    def optimum(self, k: int, force: Array, reserve: Array) -> tuple[float, float, Array]:
+    def optimum(
+        self, k: int, force: Array, activation: Array, reserve: Array
+    ) -> tuple[float, float, Array]:
         """Share the very torques that other muscle forces and reserves balance.
+
+        The muscles are as strong as the others': force over activation.
 
         Parameters
         ----------
         k : int
             Sample.
-        force : (n_m,) array
-            N.
+        force, activation : (n_m,) arrays
+            N; activations are positive.
         reserve : (n_c,) array
             N m.
 
         Returns
         -------
         tuple of float, float and (n_m,) array
-            Smallest cost, the cost of the given forces (sums of squares), and the forces of the
-            smallest cost, N.
+            Smallest cost, the cost of the given activations (sums of squares), and the forces of
+            the smallest cost, N.
         """
-        paths = self._paths(k)
-        arm = paths.moment_arm[:, self._balanced]
-        strength = self._strength(k, paths)
+        arm = self._paths(k).moment_arm[:, self._balanced]
+        strength = force / activation
         reserves = read_reserves(self.coordinate_names)
         unit = np.array([reserve.torque for reserve in reserves])
         options = self._options.static_optimization
         solver = StaticOptimization(self.muscle_names, reserves, options)
-        active = force - strength.passive
-        balance = solver.solve((arm * strength.active[:, None]).T, arm.T @ active + reserve)
-        cost = float(np.sum((active / strength.active) ** 2) + np.sum((reserve / unit) ** 2))
-        ours = balance.activation * strength.active + strength.passive
-        return balance.report.objective, cost, ours
+        balance = solver.solve((arm * strength[:, None]).T, arm.T @ force + reserve)
+        cost = float(np.sum(activation**2) + np.sum((reserve / unit) ** 2))
+        return balance.report.objective, cost, balance.activation * strength
 
     def disc_rotation(self, k: int) -> Array:
         """Return the rotation (3, 3) ground <- L5-S1 disc in a sample."""

@@ -187,7 +187,8 @@ def _check_count(
     for key in keys:
         if key in header and header[key] != str(found):
             raise StorageError(
-                path, f'header says {key}={header[key]}, the file holds {found} {what} (truncated?)'
+                path,
+                f'header says {key}={header[key]}, the file holds {found} {what} (truncated?)',
             )
 
 
