@@ -145,7 +145,7 @@ LABELS = (
     Label(258, 422, ('predicted_lift',)),
     Label(12, 428, ('lift_comparison', 'predicted_lift/joint_trajectory')),
     Label(572, 448, ('spine_load, muscle_analysis', 'joint_torques')),
-    Label(770, 428, ('l5_s1/reaction',)),
+    Label(770, 428, ('joint_reactions', 'l5_s1/reaction')),
     Label(590, 560, ('alarms, risk_assessment',)),
     Label(332, 562, ('results of all nodes',), 'what'),
 )

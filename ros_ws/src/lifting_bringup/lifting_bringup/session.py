@@ -4,8 +4,10 @@
 
 from __future__ import annotations
 
+import faulthandler
 import os
 import shutil
+import sys
 import time
 from collections.abc import Callable
 from contextlib import ExitStack
@@ -60,6 +62,9 @@ _QOS = {
 
 #: Said when a recording ends without a lift.
 NO_LIFT = 'no lift found: nothing rose as motion_tracker asks for'
+
+#: Time [s] that closing this process's own node may take.
+CLOSING = 10.0
 
 #: Time [s] without any message after which the graph counts as quiet.
 QUIET = 1.0
@@ -174,13 +179,18 @@ def run_online(
         stack.callback(_stop, helpers)
         recorder, player = helpers
         os.environ.update(discovery())
+        stack.callback(faulthandler.cancel_dump_traceback_later)
         rclpy.init()
         stack.callback(rclpy.try_shutdown)
         node = Node('lift_run', namespace=options.station)
         stack.callback(node.destroy_node)
         executor = EventsExecutor()
         stack.callback(executor.shutdown)
-        # The processes end before this one's node does, whatever happens to that.
+        # The processes end before this one's node does, whatever happens to that: after an
+        # interruption rclpy can wait for ever in destroy_node.
+        stack.callback(
+            faulthandler.dump_traceback_later, CLOSING, exit=True, file=sys.__stderr__
+        )
         stack.callback(_stop, [*helpers, *processes])
         executor.add_node(node)
         graph = Graph(node, executor, options.station, processes, say)
