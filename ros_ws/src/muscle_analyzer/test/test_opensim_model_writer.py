@@ -3,6 +3,7 @@
 """A written model is read back as the same model, in its parts and in what it computes."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -22,6 +23,7 @@ from muscle_analyzer.core.kinematics import body_jacobians, forward_kinematics
 from muscle_analyzer.core.multibody import compile_model
 from muscle_analyzer.core.muscle_path_table import path_table
 from muscle_analyzer.core.muscle_paths import muscle_paths
+from muscle_analyzer.core.opensim.meshes import read_meshes, scaled_meshes
 from muscle_analyzer.core.opensim.model_writer import write_osim
 from muscle_analyzer.core.opensim.xml_functions import function_element, xyz_angles
 from muscle_analyzer.core.osim_model import PathPoint
@@ -168,3 +170,25 @@ def test_turns_give_the_rotation_again(x, y, z):
 def test_turns_where_two_axes_are_one():
     rotation = body_fixed_xyz(np.array([0.4, np.pi / 2, 0.3]))
     np.testing.assert_allclose(body_fixed_xyz(xyz_angles(rotation)), rotation, atol=1e-9)
+
+
+def test_bones_come_back_stretched_with_their_bodies(lifting_model, tmp_path):
+    """Twice as deep, tall and wide a shank has a mesh twice as large, twice as far off."""
+    meshes = read_meshes(Path(lifting_model.source))
+    assert len(meshes) > 80
+    factors = {body.name: np.ones(3) for body in lifting_model.bodies}
+    factors['tibia_r'] = np.full(3, 2.0)
+    path = tmp_path / 'bones.osim'
+    write_osim(path, lifting_model, scaled_meshes(meshes, factors))
+    again = read_meshes(path)
+    assert sorted(m.file for m in again) == sorted(m.file for m in meshes)
+    # The writer goes through the bodies; those on a body's own frames come last when read.
+    bodies = [body.name for body in lifting_model.bodies]
+    order = sorted(meshes, key=lambda mesh: bodies.index(mesh.frame.body))
+    for mesh, other in zip(order, again, strict=True):
+        assert (other.file, other.frame.body) == (mesh.file, mesh.frame.body)
+        size = 2.0 if mesh.frame.body == 'tibia_r' else 1.0
+        np.testing.assert_allclose(other.scale, size * mesh.scale)
+        np.testing.assert_allclose(other.frame.translation, size * mesh.frame.translation)
+        np.testing.assert_allclose(other.frame.rotation, mesh.frame.rotation, atol=1e-12)
+    assert len(read_osim(path).muscles) == len(lifting_model.muscles)

@@ -76,7 +76,7 @@ def export_motion(
     folder.mkdir(parents=True, exist_ok=True)
     start, end = float(motion.time[0]), float(motion.time[-1])
     step = SAMPLES_PER_SOLUTION
-    write_osim(folder / files.MODEL, motion.model.source)
+    write_osim(folder / files.MODEL, motion.model.source, motion.meshes)
     write_storage(folder / files.COORDINATES, coordinates_storage(motion))
     write_storage(folder / files.LOADS_DATA, loads_storage(motion))
     files.write_external_loads(folder / files.LOADS, motion.forces)

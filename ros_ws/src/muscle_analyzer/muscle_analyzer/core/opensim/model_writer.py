@@ -3,19 +3,21 @@
 """Writes a model as an `.osim` file, so that OpenSim computes with the very same model.
 
 Everything that `osim_reader` reads is written: bodies, joints with their functions, couplers,
-wrap objects, muscles, markers. What it leaves out (contact, actuators, meshes) is not in the file.
+wrap objects, muscles, markers. What it leaves out (contact, actuators) is not in the file.
 Offset frames are merged into the joints' two frames, path points and surfaces are in their body's
 own frame.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 
 from muscle_analyzer.core.exceptions import ModelWriteError
+from muscle_analyzer.core.opensim.meshes import Mesh, add_meshes
 from muscle_analyzer.core.opensim.muscle_writer import muscle_element, wrap_object_element
 from muscle_analyzer.core.opensim.xml_functions import function_element, xyz_angles
 from muscle_analyzer.core.opensim.xml_tree import (
@@ -45,13 +47,15 @@ _WELD = 'WeldJoint'
 _COLLINEAR = 1e-3
 
 
-def write_osim(path: Path, model: OsimModel) -> None:
+def write_osim(path: Path, model: OsimModel, meshes: Sequence[Mesh] = ()) -> None:
     """Write a model.
 
     Parameters
     ----------
     path : Path
     model : OsimModel
+    meshes : sequence of Mesh
+        For the eye.
 
     Raises
     ------
@@ -63,7 +67,7 @@ def write_osim(path: Path, model: OsimModel) -> None:
     add_numbers(root, 'gravity', model.gravity)
     add_text(root, 'length_units', 'meters')
     add_text(root, 'force_units', 'N')
-    add_set(root, 'BodySet', [_body(model, body) for body in model.bodies])
+    add_set(root, 'BodySet', [_body(model, body, meshes) for body in model.bodies])
     add_set(root, 'JointSet', [_joint(joint) for joint in model.joints])
     add_set(root, 'ConstraintSet', [_coupler(coupler) for coupler in model.couplers])
     joint_of = {c.name: joint.name for joint in model.joints for c in joint.coordinates}
@@ -83,8 +87,9 @@ def _add_wraps(element: Element, model: OsimModel, body: str) -> None:
     add_set(element, 'WrapObjectSet', [wrap_object_element(wrap) for wrap in wraps])
 
 
-def _body(model: OsimModel, body: Body) -> Element:
+def _body(model: OsimModel, body: Body, meshes: Sequence[Mesh]) -> Element:
     element = named('Body', body.name)
+    add_meshes(element, tuple(mesh for mesh in meshes if mesh.frame.body == body.name))
     _add_wraps(element, model, body.name)
     add_numbers(element, 'mass', body.mass)
     add_numbers(element, 'mass_center', body.mass_center)

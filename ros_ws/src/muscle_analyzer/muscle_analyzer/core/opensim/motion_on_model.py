@@ -8,7 +8,8 @@ see the same input. Everything is in OpenSim's axes.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,7 @@ from muscle_analyzer.core.inverse_dynamics import add_force
 from muscle_analyzer.core.kinematics import coordinate_state
 from muscle_analyzer.core.motion_derivatives import differentiate
 from muscle_analyzer.core.multibody import MultibodyModel
+from muscle_analyzer.core.opensim.meshes import Mesh, read_meshes, scaled_meshes
 from muscle_analyzer.core.opensim.setup_files import PointForce
 from muscle_analyzer.core.transfer import MotionTransfer
 
@@ -46,6 +48,8 @@ class MotionOnModel:
         Rates and accelerations that belong to `q`.
     forces : tuple of PointForce
         Of ground and box.
+    meshes : tuple of Mesh
+        Bones, for OpenSim's window only.
     """
 
     model: MultibodyModel
@@ -54,6 +58,7 @@ class MotionOnModel:
     qd: Array
     qdd: Array
     forces: tuple[PointForce, ...]
+    meshes: tuple[Mesh, ...] = ()
 
     def external(self, k: int) -> Array:
         """Return the wrenches (n_b, 6) on the bodies in sample `k`, see `add_force`."""
@@ -78,7 +83,7 @@ class MotionOnModel:
             If there are too few samples or their steps are not even.
         """
         qd, qdd = differentiate(self.time, self.q)
-        return MotionOnModel(self.model, self.time, self.q, qd, qdd, self.forces)
+        return replace(self, qd=qd, qdd=qdd)
 
     def rows(self, times: Array) -> NDArray[np.int64]:
         """Return the numbers of the samples nearest to the given times, each once.
@@ -116,6 +121,8 @@ def motion_on_model(transfer: MotionTransfer, motion: BodyMotion, start: float) 
     ------
     TransferError
         If a sample cannot be taken over.
+    OsimFormatError
+        If the generic model's file was damaged in the meantime.
     """
     transfer.reset()
     poses = [transfer.step(motion, k) for k in range(len(motion))]
@@ -124,13 +131,15 @@ def motion_on_model(transfer: MotionTransfer, motion: BodyMotion, start: float) 
             raise TransferError(
                 f'sample at {time - start:.3f} s: not converged in {pose.iterations} iterations'
             )
+    model = transfer.subject.multibody
     return MotionOnModel(
-        model=transfer.subject.multibody,
+        model=model,
         time=np.round(motion.time - start, TIME_DECIMALS),
         q=np.array([pose.q for pose in poses]),
         qd=np.array([pose.qd for pose in poses]),
         qdd=np.array([pose.qdd for pose in poses]),
         forces=forces_of(motion),
+        meshes=scaled_meshes(read_meshes(Path(model.source.source)), transfer.subject.factors),
     )
 
 
