@@ -13,13 +13,13 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
+from human_model import constants
 from human_model.tree import TreeArrays
 
 Array = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-#: Standard gravity [m/s^2] (CGPM 1901).
-GRAVITY = 9.80665
+GRAVITY = constants.GRAVITY
 
 _PRISMATIC = 1
 

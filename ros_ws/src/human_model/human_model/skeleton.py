@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from human_model import compiled
+from human_model import tree_kinematics
 from human_model.anthropometry import SegmentParameters
+from human_model.constants import GRAVITY
 from human_model.dh import Chain, load_chain
 from human_model.errors import ChainError, MotionError
 from human_model.frames import quaternion_from_matrix
@@ -20,6 +21,7 @@ from human_model.tables import length_sum, read_table
 from human_model.tree import TreeArrays, build_tree, segment_points
 
 Array = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,6 +63,9 @@ class Skeleton:
     ChainError
         If the segments are not those of the skeleton, or a table is inconsistent.
     """
+
+    uses_compiled = True
+    """Whether kinematics run in numba (single instants at 100 Hz) or in NumPy (whole motions)."""
 
     def __init__(self, name: str, parameters: SegmentParameters) -> None:
         self.name = name
@@ -116,7 +121,7 @@ class Skeleton:
 
     def forward(self, q: npt.ArrayLike) -> Array:
         """Anatomical frames (n_s, 4, 4) of all segments, in the order of ``segments``."""
-        rotation, origin = compiled.segment_frames(self.tree, self._vector('q', q))
+        rotation, origin = self._segment_frames(self._vector('q', q))
         frames = np.zeros((len(self.segments), 4, 4))
         frames[:, :3, :3] = rotation
         frames[:, :3, 3] = origin
@@ -125,33 +130,41 @@ class Skeleton:
 
     def points(self, q: npt.ArrayLike) -> dict[str, Array]:
         """Positions (3,) [m] of the shared points by name."""
-        position = compiled.point_positions(self.tree, self._vector('q', q), self.point_segment,
-                                            self.point_local)
+        position = self._positions(self._vector('q', q), self.point_segment, self.point_local)
         return dict(zip(POINTS, position, strict=True))
 
     def point_array(self, q: npt.ArrayLike) -> Array:
         """Positions (n, n_p, 3) [m] of the shared points for coordinates (n, n_q)."""
-        return np.array([compiled.point_positions(self.tree, row, self.point_segment,
-                                                  self.point_local)
-                         for row in self._block('q', q)])
+        block = self._block('q', q)
+        if not self.uses_compiled:
+            return tree_kinematics.point_positions(
+                self.tree, block, self.point_segment, self.point_local)
+        return np.array([self._positions(row, self.point_segment, self.point_local)
+                         for row in block])
 
     def frame_array(self, q: npt.ArrayLike) -> Array:
         """Quaternions (n, n_f, 4) xyzw of the shared frames for coordinates (n, n_q)."""
-        rotation = np.array([compiled.segment_frames(self.tree, row)[0][self.frame_segment]
-                             for row in self._block('q', q)])
+        block = self._block('q', q)
+        if self.uses_compiled:
+            rotation = np.array([self._segment_frames(row)[0][self.frame_segment]
+                                 for row in block])
+        else:
+            rotation = tree_kinematics.segment_frames(self.tree, block)[0][:, self.frame_segment]
         return quaternion_from_matrix(rotation)
 
     def point_jacobian(self, q: npt.ArrayLike, segment: str, local: npt.ArrayLike) -> Array:
         """Jacobian (n, 3, n_q) of points (n, 3) [m] given in a segment's anatomical frame."""
         position = np.ascontiguousarray(np.atleast_2d(np.asarray(local, dtype=np.float64)))
         which = np.full(len(position), self.parameters.index(segment), dtype=np.int64)
+        from human_model import compiled
+
         return compiled.points_and_jacobian(self.tree, self._vector('q', q), which, position)[1]
 
     def centre_of_mass(self, q: npt.ArrayLike) -> Array:
         """Centre of mass (3,) of the whole body [m]."""
         local = self.parameters.com
         which = np.arange(len(self.segments))
-        position = compiled.point_positions(self.tree, self._vector('q', q), which, local)
+        position = self._positions(self._vector('q', q), which, local)
         return np.asarray(self.parameters.mass @ position / self.total_mass)
 
     def wrenches(self, external: Sequence[ExternalForce]) -> Array:
@@ -167,12 +180,14 @@ class Skeleton:
 
     def inverse_dynamics(self, q: npt.ArrayLike, qd: npt.ArrayLike, qdd: npt.ArrayLike,
                          external: Sequence[ExternalForce] = (),
-                         gravity: float = compiled.GRAVITY) -> Array:
+                         gravity: float = GRAVITY) -> Array:
         """Generalised forces (n_q,) [N m; N for translations] that make this motion.
 
         ``external`` are forces on segments, gravity not among them. The first coordinates' values
         are the residual at the pelvis: zero when the external forces explain the motion.
         """
+        from human_model import compiled
+
         return compiled.newton_euler(
             self.tree, self._vector('q', q), self._vector('qd', qd), self._vector('qdd', qdd),
             self.wrenches(external), gravity)
@@ -200,6 +215,24 @@ class Skeleton:
             velocity=self._block('qd', qd), acceleration=self._block('qdd', qdd),
             point_names=POINTS, points=self.point_array(position), frame_names=FRAMES,
             frames=self.frame_array(position), **values)
+
+    def _segment_frames(self, q: Array) -> tuple[Array, Array]:
+        if not self.uses_compiled:
+            rotation, origin = tree_kinematics.segment_frames(self.tree, q[None])
+            return rotation[0], origin[0]
+        # Numba loads for long.
+        from human_model import compiled
+
+        rotation, origin = compiled.segment_frames(self.tree, q)
+        return rotation, origin
+
+    def _positions(self, q: Array, segment: IntArray, local: Array) -> Array:
+        if not self.uses_compiled:
+            return tree_kinematics.point_positions(self.tree, q[None], segment, local)[0]
+        from human_model import compiled
+
+        position: Array = compiled.point_positions(self.tree, q, segment, local)
+        return position
 
     def _vector(self, name: str, value: npt.ArrayLike) -> Array:
         vector = np.ascontiguousarray(value, dtype=np.float64)

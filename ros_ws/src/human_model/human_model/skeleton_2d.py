@@ -14,6 +14,9 @@ class Skeleton2D(Skeleton):
     to the left of the plane, so that the result can be taken over to a model with two sides.
     """
 
+    # Predicted motions are evaluated as a whole, and numba loads for longer than that takes.
+    uses_compiled = False
+
     def __init__(self, parameters: SegmentParameters) -> None:
         super().__init__('2d_10dof', parameters)
 

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from human_model.compiled import GRAVITY
+from human_model.constants import GRAVITY
 from human_model.errors import StrengthError
 from human_model.subject import Subject
 from human_model.tables import read_table

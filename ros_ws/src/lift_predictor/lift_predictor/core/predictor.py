@@ -7,7 +7,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,9 +39,12 @@ from lift_predictor.core.sagittal.task import POSTURE_TOLERANCE, Box, LiftTask2D
 from lift_predictor.core.sagittal.verify import Verification, verify
 from lift_predictor.core.solvers.optimum import Optimum, Progress, Start
 from lift_predictor.core.solvers.solution import Status
-from lift_predictor.core.spatial.comparison import SpatialComparison
-from lift_predictor.core.spatial.prediction import PredictedLift3D
-from lift_predictor.core.spatial.predictor import SpatialOptions, SpatialPredictor
+
+if TYPE_CHECKING:
+    # They import CasADi, which a lift in the plane does without.
+    from lift_predictor.core.spatial.comparison import SpatialComparison
+    from lift_predictor.core.spatial.prediction import PredictedLift3D
+    from lift_predictor.core.spatial.predictor import SpatialOptions, SpatialPredictor
 
 Array = NDArray[np.float64]
 
@@ -87,7 +90,9 @@ class PredictorOptions:
 
     @property
     def spatial(self) -> SpatialOptions:
-        """The same settings for lifts in space, where the recorded postures have 3.15's windows."""
+        """The same settings for lifts in space; recorded postures have the windows of 3.15."""
+        from lift_predictor.core.spatial.predictor import SpatialOptions
+
         return SpatialOptions(
             n_control=self.n_control,
             n_nodes=self.n_nodes,
@@ -180,6 +185,8 @@ class LiftPredictor:
         if self._subject is None:
             raise TaskError('subject: none was configured before the first lift')
         if self._spatial is None:
+            from lift_predictor.core.spatial.predictor import SpatialPredictor
+
             self._spatial = SpatialPredictor(self.options.spatial)
         if self._spatial.subject is not self._subject:
             self._spatial.configure(self._subject)

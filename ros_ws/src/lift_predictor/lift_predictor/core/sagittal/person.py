@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from human_model.anthropometry import SegmentParameters, body_dimensions
-from human_model.compiled import GRAVITY
+from human_model.constants import GRAVITY
 from human_model.inertia import combine
 from human_model.skeleton_2d import Skeleton2D
 from human_model.strength import JointStrength

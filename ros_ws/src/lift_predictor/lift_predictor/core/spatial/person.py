@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from human_model.anthropometry import SegmentParameters, body_dimensions
-from human_model.compiled import GRAVITY
+from human_model.constants import GRAVITY
 from human_model.inertia import combine
 from human_model.skeleton_3d import Skeleton3D
 from human_model.strength import JointStrength
