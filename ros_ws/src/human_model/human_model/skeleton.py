@@ -228,7 +228,8 @@ class Skeleton:
 
     def _positions(self, q: Array, segment: IntArray, local: Array) -> Array:
         if not self.uses_compiled:
-            return tree_kinematics.point_positions(self.tree, q[None], segment, local)[0]
+            found = tree_kinematics.point_positions(self.tree, q[None], segment, local)
+            return np.asarray(found[0])
         from human_model import compiled
 
         position: Array = compiled.point_positions(self.tree, q, segment, local)

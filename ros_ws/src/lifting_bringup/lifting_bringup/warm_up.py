@@ -42,11 +42,15 @@ def warm_analyzer() -> None:
 
 
 def warm_predictor() -> None:
-    """Build the programme of the default options and the sagittal model of a person."""
+    """Build the programmes of the default options and the sagittal model of a person."""
     from human_model.named_subjects import named_subject, subject_names
     from lift_predictor.core.predictor import LiftPredictor
+    from lift_predictor.core.solvers.compiled import build_programme
 
-    LiftPredictor().configure(named_subject(subject_names()[0]))
+    predictor = LiftPredictor()
+    predictor.configure(named_subject(subject_names()[0]))
+    # IPOPT's functions, for lifts that our own solver leaves without an answer.
+    build_programme(predictor.programme.grid)
 
 
 #: What can be warmed, longest first.
