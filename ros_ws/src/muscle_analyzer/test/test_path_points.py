@@ -14,6 +14,7 @@ from muscle_analyzer.core.multibody import compile_model
 from muscle_analyzer.core.muscle_path_table import path_table
 from muscle_analyzer.core.muscle_paths import muscle_paths, posture_paths
 from muscle_analyzer.core.osim_reader import read_osim
+from muscle_analyzer.core.subject_model import default_path_lengths
 
 LAST = '<PathPoint name="p2">'
 CONDITIONAL = """<ConditionalPathPoint name="via"><socket_parent_frame>/bodyset/upper
@@ -173,3 +174,10 @@ def test_range_counts_points_that_are_not_there(compiled):
     via = np.array([-0.08, -0.05])
     straight = length_of(ends[0], via, ends[1])
     assert paths_at(model, table, [0.0, 0.1]).length[0] > straight + 1e-4
+
+
+def test_default_path_lengths_know_the_posture(compiled):
+    """Scaling takes fibre lengths from them: a model with such points can be scaled."""
+    model, table = compiled(CONDITIONAL.format(range='-0.5 0.5', coordinate='shoulder/q1'))
+    expected = paths_at(model, table, model.default).length
+    assert default_path_lengths(model.source) == pytest.approx(expected, abs=1e-14)

@@ -18,7 +18,7 @@ from muscle_analyzer.core.exceptions import ModelFileError
 from muscle_analyzer.core.kinematics import body_jacobians, forward_kinematics
 from muscle_analyzer.core.multibody import MultibodyModel, compile_model
 from muscle_analyzer.core.muscle_path_table import path_table
-from muscle_analyzer.core.muscle_paths import muscle_paths
+from muscle_analyzer.core.muscle_paths import posture_paths
 from muscle_analyzer.core.osim_model import OsimModel
 from muscle_analyzer.core.scaling import StrengthScaling, scale_model
 from muscle_analyzer.core.segment_masses import SegmentMass, with_segment_masses
@@ -71,7 +71,7 @@ def default_path_lengths(model: OsimModel) -> Array:
     state = forward_kinematics(multibody.tree, multibody.default, zero, zero)
     jacobians = body_jacobians(multibody.tree, state)
     table = path_table(multibody)
-    length: Array = muscle_paths(table, state.position, state.rotation, jacobians).length
+    length: Array = posture_paths(table, state, jacobians).length
     return length
 
 

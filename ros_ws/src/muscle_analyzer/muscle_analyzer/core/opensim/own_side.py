@@ -20,7 +20,7 @@ from muscle_analyzer.core.joint_reaction import joint_reactions
 from muscle_analyzer.core.kinematics import BodyState, body_jacobians, forward_kinematics
 from muscle_analyzer.core.load_solver import KNEES, L5, THORAX, LoadSolver
 from muscle_analyzer.core.muscle_path_table import path_table
-from muscle_analyzer.core.muscle_paths import MusclePaths, body_wrenches, muscle_paths
+from muscle_analyzer.core.muscle_paths import MusclePaths, body_wrenches, posture_paths
 from muscle_analyzer.core.opensim.answers import Answer
 from muscle_analyzer.core.opensim.motion_on_model import MotionOnModel
 from muscle_analyzer.core.reserves import read_reserves
@@ -98,7 +98,7 @@ class OwnSide:
     def _paths(self, k: int) -> MusclePaths:
         state = self._state(k)
         jacobian = body_jacobians(self.motion.model.tree, state)
-        return muscle_paths(self._table, state.position, state.rotation, jacobian)
+        return posture_paths(self._table, state, jacobian)
 
     def reactions(self, k: int, force: Array) -> Array:
         """Return the reactions (n_b, 6) at all joints under given muscle forces (n_m,), N."""
