@@ -11,12 +11,15 @@ import numpy as np
 import pytest
 
 from human_model.report import SolveStatus
-from lift_predictor.core.exceptions import CancelledError, PlanError
+from lift_predictor.core.exceptions import CancelledError, PlanError, UnreachableError
+from lift_predictor.core.maximum_weight import Weighting
+from lift_predictor.core.planning.feet import place_feet
 from lift_predictor.core.planning.plan_task import PlanTask
 from lift_predictor.core.planning.planner import LiftPlanner
 from lift_predictor.core.planning.summary import summarise
 from lift_predictor.core.planning.task_file import read_task_file
 from lift_predictor.core.predictor import LiftPredictor
+from lift_predictor.core.study.study_file import read_study
 
 ROOT = Path(__file__).resolve().parents[4]
 TASK = PlanTask(
@@ -99,9 +102,9 @@ def test_out_of_reach_is_a_report(planner, subject) -> None:
     high = planner.plan(subject, replace(TASK, end=(0.55, 0.0, 2.4)))
     assert high.report.status is SolveStatus.PREDICTOR_UNREACHABLE
     assert 'task.end' in high.report.message
-    nowhere = planner.plan(subject, replace(TASK, end=(0.55, 0.0, 2.4), feet=None))
-    assert nowhere.report.status is SolveStatus.PREDICTOR_UNREACHABLE
-    assert 'task.feet' in nowhere.report.message
+    nowhere = replace(TASK, end=(0.55, 0.0, 2.4), feet=None)
+    with pytest.raises(UnreachableError, match=r'task\.feet: from none of 5 places'):
+        place_feet(planner.predictor, nowhere, Weighting())
     aside = planner.plan(subject, replace(TASK, end=(0.4, 0.4, 1.0)))
     assert aside.report.status is SolveStatus.PREDICTOR_BAD_INPUT
 
@@ -119,10 +122,15 @@ def test_listener_ends_the_work_between_two_runs(planner, subject) -> None:
     assert told[0].done == 1 < told[0].total
 
 
-@pytest.mark.parametrize('path', sorted((ROOT / 'examples').glob('*.yaml')), ids=lambda p: p.stem)
+EXAMPLES = sorted((ROOT / 'examples').glob('*.yaml'))
+
+
+@pytest.mark.parametrize('path', EXAMPLES, ids=lambda p: p.stem)
 def test_example_is_read(path: Path) -> None:
-    if 'subjects' in path.read_text(encoding='utf-8'):
-        pytest.skip('a study, not a task')
+    if path.stem.startswith('study_'):
+        study = read_study(path)
+        assert len(study.cases()) == len(study.subjects) * len(study.tasks)
+        return
     entry = read_task_file(path)
     assert entry.task.name == path.stem
     assert entry.task.box_size == (0.238, 0.305, 0.127)
