@@ -28,8 +28,8 @@ SEED: Final = 94110
 WAYS: Final = ('too heavy', 'shelf too high', 'reach too far')
 OVERLOAD: Final = 1.1
 """Mass against the heaviest box of the maximum-weight programme without posture windows."""
-REACH: Final = 1.0
-"""Over the head, and before the feet: where no hand reaches [m]."""
+BEYOND: Final = (1.6, 1.0)
+"""Height, and distance before the ankles, in statures: where no hand reaches."""
 NOT_DONE: Final = (SolveStatus.PREDICTOR_INFEASIBLE, SolveStatus.PREDICTOR_UNREACHABLE)
 
 
@@ -40,10 +40,9 @@ def make_infeasible(
     while True:
         subject, task, plan = plan_random(rng, name)
         if way == 'shelf too high':
-            height = subject.stature + REACH
-            return subject, replace(task, end=(*task.end[:2], height))
+            return subject, replace(task, end=(*task.end[:2], BEYOND[0] * subject.stature))
         if way == 'reach too far':
-            return subject, replace(task, end=(REACH, *task.end[1:]))
+            return subject, replace(task, end=(BEYOND[1] * subject.stature, *task.end[1:]))
         predictor = planner.predictor
         predictor.configure(subject)
         starts = plan.starts(predictor.programme.grid.spline, STARTS)
