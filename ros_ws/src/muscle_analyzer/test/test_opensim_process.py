@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from muscle_analyzer.core.exceptions import OpenSimError
-from muscle_analyzer.core.opensim import process
+from muscle_analyzer.core.opensim import process, referee, setup_files
 from muscle_analyzer.core.opensim.process import VARIABLE, OpenSimPython, find_opensim, run_referee
+from muscle_analyzer.core.opensim.storage import Storage, read_storage, write_storage
 
 
 @pytest.fixture
@@ -90,3 +91,39 @@ def test_a_run_that_hangs_is_ended(tmp_path, program, monkeypatch):
     python = program('exec sleep 60')
     with pytest.raises(OpenSimError, match=r'took more than 0 s; see .*referee\.log'):
         run_referee(OpenSimPython(python, '4.6'), tmp_path, np.array([0.1]), print)
+
+
+def test_the_script_knows_the_files_by_the_names_that_the_exporter_gives():
+    """It runs where this project is not installed, so it has its own copy of the names."""
+    for name, other in (
+        ('INVERSE_DYNAMICS', 'INVERSE_DYNAMICS'),
+        ('STATIC_OPTIMIZATION', 'STATIC_OPTIMIZATION'),
+        ('JOINT_REACTION', 'JOINT_REACTION'),
+        ('MODEL', 'MODEL'),
+        ('COORDINATES', 'COORDINATES'),
+        ('RESULTS', 'RESULTS'),
+        ('ANSWER', 'REFEREE_RESULT'),
+        ('FORCES', 'FORCES_RESULT'),
+        ('ACTIVATIONS', 'ACTIVATIONS_RESULT'),
+        ('REACTIONS', 'REACTIONS_RESULT'),
+    ):
+        assert getattr(referee, name) == getattr(setup_files, other)
+
+
+def test_rows_of_instants_become_one_table(tmp_path):
+    """One row alone gets a second one: OpenSim interpolates between rows."""
+    parts = []
+    for k in range(2):
+        path = tmp_path / f'{k}.sto'
+        table = Storage('Forces', ('a', 'b'), np.array([0.1 * k]), np.array([[1.0 + k, 2.0]]))
+        write_storage(path, table)
+        parts.append(path)
+    whole = tmp_path / 'whole.sto'
+    referee.joined(parts, whole)
+    found = read_storage(whole)
+    np.testing.assert_array_equal(found.values, [[1.0, 2.0], [2.0, 2.0]])
+    np.testing.assert_allclose(found.time, [0.0, 0.1])
+    referee.joined(parts[1:], whole)
+    found = read_storage(whole)
+    np.testing.assert_array_equal(found.values, [[2.0, 2.0], [2.0, 2.0]])
+    assert found.time[1] - found.time[0] == pytest.approx(1e-6, rel=1e-3)
