@@ -50,6 +50,13 @@ def test_known_strength_is_found_again(by_root, known) -> None:
     assert by_root.percentile == pytest.approx(72.6, abs=0.7)
 
 
+def test_a_prediction_with_the_found_strength_is_the_same(by_root, subject, known) -> None:
+    again = LiftPredictor()
+    again.configure(replace(subject, strength_z=by_root.z_score))
+    result = predict_maximum_weight(again, *known)
+    assert result.weight == pytest.approx(by_root.predicted, rel=1e-6)
+
+
 def test_enumeration_gives_the_same_to_its_step(predictor, known, by_root) -> None:
     step = 0.5
     found = percentile_by_enumeration(predictor, *known, step=step)

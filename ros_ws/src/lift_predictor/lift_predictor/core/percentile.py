@@ -144,10 +144,11 @@ class StrengthSearch:
             The prediction failed although the lift may be feasible.
         """
         if z not in self.tried:
-            near, task = self._nearest_starts(z), self.task_of(z)
-            found = solve_maximum_weight(self.predictor, task, near, self.weighting)
-            if not found.report.ok and near is not self._starts:
-                found = solve_maximum_weight(self.predictor, task, self._starts, self.weighting)
+            # From the starts that a later prediction with this z-score has, or it could differ.
+            task, near = self.task_of(z), self._last()
+            found = solve_maximum_weight(self.predictor, task, self._starts, self.weighting)
+            if not found.report.ok and near is not None:
+                found = solve_maximum_weight(self.predictor, task, (near,), self.weighting)
             self.tried[z] = found
         report = self.tried[z].report
         if not report.ok and not self._too_weak(self.tried[z]):
@@ -168,21 +169,13 @@ class StrengthSearch:
             return bool(at_nodes * self.task.parameters.gravity < self.measured)
         return failed.report.status is SolveStatus.PREDICTOR_INFEASIBLE
 
-    def _nearest_starts(self, z: float) -> tuple[Start, ...]:
-        """Return the solved lift of the nearest z-score, or the starts of the task."""
-        solved = [other for other, found in self.tried.items() if found.report.ok]
-        if not solved:
-            return self._starts
-        nearest = min(solved, key=lambda other: abs(other - z))
-        return (self.tried[nearest].prediction.optima[0].as_start(),)
+    def _last(self) -> Start | None:
+        """Return the lift that was solved last."""
+        solved = [found for found in self.tried.values() if found.report.ok]
+        return solved[-1].prediction.optima[0].as_start() if solved else None
 
     def result(self, z: float) -> Percentile:
-        """Return what was found at a z-score that was tried, challenged from all starts once."""
-        challenge = solve_maximum_weight(
-            self.predictor, self.task_of(z), self._starts, self.weighting
-        )
-        if challenge.report.ok and challenge.weight > self.tried[z].weight + WEIGHT_TOLERANCE:
-            self.tried[z] = challenge
+        """Return what was found at a z-score that was tried."""
         tried = tuple((other, self.tried[other].weight) for other in sorted(self.tried))
         return Percentile(z, self.measured, self.tried[z].weight, tried, self.tried[z])
 
