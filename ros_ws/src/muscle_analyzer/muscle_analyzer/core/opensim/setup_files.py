@@ -3,7 +3,8 @@
 """External loads, reserve actuators and set-ups of OpenSim's tools, as XML documents.
 
 Tags as OpenSim 4.6 prints them (`printToXML` of `ExternalLoads`, `InverseDynamicsTool` and
-`AnalyzeTool`). Paths in them are relative to the document, as the tools want them.
+`AnalyzeTool`). Paths in them are relative to the folder of the export, which must be the current
+one of the process that runs the tools; so the folder can be moved.
 """
 
 from __future__ import annotations
