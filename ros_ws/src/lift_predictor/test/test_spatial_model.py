@@ -42,7 +42,7 @@ def placed(who: SpatialPerson, half=0.15, ahead=0.02, turns=(-0.14, 0.2)) -> Spa
         box_width=WIDTH,
         box_turning=0.13,
         box_from_hand=np.array([0.02, 0.0, 0.03]),
-        sector=np.array([[0.3, 1.0], [0.3, -1.0]]),
+        way=np.array([[0.3, 1.0, 0.0, 0.0], [0.3, -1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]]),
     )
 
 

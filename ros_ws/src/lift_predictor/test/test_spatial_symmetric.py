@@ -19,7 +19,7 @@ from lift_predictor.core.solvers.solution import InteriorPointOptions
 from lift_predictor.core.solvers.solve import solve
 from lift_predictor.core.spatial.evaluation import evaluate
 from lift_predictor.core.spatial.frame import StanceFrame
-from lift_predictor.core.spatial.grid import LIMITED, SECTOR_ROWS, SpatialGrid, row_slice
+from lift_predictor.core.spatial.grid import LIMITED, WAY_ROWS, SpatialGrid, row_slice
 from lift_predictor.core.spatial.parameters import SPLINED, STRONG, SpatialParameters
 from lift_predictor.core.spatial.person import SpatialPerson
 from lift_predictor.core.spatial.programme import (
@@ -132,7 +132,7 @@ def test_symmetric_optimum_is_the_sagittal_one(
     task = place_task(who, upright(who), box, (1.2, 1.2), grid)
     spatial_parameters = with_criterion_of_the_plane(task.parameters, person)
     # The sagittal box may go anywhere when it has no size.
-    task.bounds.node_lower[:, row_slice(SECTOR_ROWS)] = -1e3
+    task.bounds.node_lower[:, row_slice(WAY_ROWS)] = -1e3
     lumbar = LIMITED.index('lumbar_extension')
     task.bounds.angle_lower[:, lumbar] = person.angle_lower[JOINTS.index('lumbar_extension')]
     task.bounds.angle_upper[:, lumbar] = person.angle_upper[JOINTS.index('lumbar_extension')]

@@ -39,8 +39,9 @@ class SpatialLoads:
         Distance of the box from the collision spheres (3.10) [m]; 1 for an unused one.
     share : array, shape (n,)
         Place of the centres of pressure, 0 at the heels, 1 at the tips of the toes.
-    inside : array, shape (n, 2)
-        Distance of the box's centre from right and left edge of its sector [m].
+    inside : array, shape (n, 3)
+        Distance of the box's centre from right and left edge of its sector, and from the lower of
+        its places [m].
     """
 
     torque: Array

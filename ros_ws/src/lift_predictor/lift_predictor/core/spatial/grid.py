@@ -35,14 +35,16 @@ GROUND_ROWS: Final = (
     *(f'vertical ground reaction of the {side} foot' for side in _SIDES),
 )
 COLLISION_ROWS: Final = tuple(f'collision (3.10) of the box with the {n}' for n in SPHERE_NAMES)
-SECTOR_ROWS: Final = ('box in its sector, right edge', 'box in its sector, left edge')
+WAY_ROWS: Final = (
+    'box in its sector, right edge', 'box in its sector, left edge', 'box above its lower place',
+)  # fmt: skip
 HAND_ROWS: Final = ('distance of the hands (3.11)', 'box level (3.12)')
 NODE_ROWS: Final = (
-    *TORQUE_ROWS, *ANGLE_ROWS, *GROUND_ROWS, *COLLISION_ROWS, *SECTOR_ROWS, *HAND_ROWS,
+    *TORQUE_ROWS, *ANGLE_ROWS, *GROUND_ROWS, *COLLISION_ROWS, *WAY_ROWS, *HAND_ROWS,
 )  # fmt: skip
 """Rows of every node. Units: torques 0 at the lower and 1 at the upper dynamic limit; angles
 [rad]; balance 0 at the heels, 1 at the tips of the toes; ground reactions per body weight;
-collision squared distance per squared sum of radii, less 1; sector and hands `HAND_SCALE`."""
+collision squared distance per squared sum of radii, less 1; way and hands `HAND_SCALE`."""
 
 LIMITED: Final = SPLINED[4:]
 """Splined coordinates with joint limits: knees, spine, arms."""
@@ -60,7 +62,7 @@ REPORT_OUTPUTS: Final = (
     ('angles', len(DEPENDENT)),
     ('gaps', len(SPHERE_NAMES)),
     ('share', 1),
-    ('inside', 2),
+    ('inside', 3),
 )
 """Outputs of the report and their sizes, in physical units."""
 
@@ -157,7 +159,7 @@ class SpatialBounds:
 
     Attributes
     ----------
-    node_lower, node_upper : array, shape (n_nodes, 57)
+    node_lower, node_upper : array, shape (n_nodes, 58)
         Bounds of `NODE_ROWS` at each node; posture (3.15) and ground reaction windows (3.16, 5.1)
         are narrower bounds at some nodes.
     angle_lower, angle_upper : array, shape (n_nodes, 22)

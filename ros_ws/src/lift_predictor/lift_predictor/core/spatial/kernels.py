@@ -119,7 +119,7 @@ def _instant(q: Any, dq: Any, ddq: Any, mass: Any, p: Any) -> dict[str, Any]:
 
 
 def _collision(state: Any, right: Any, left: Any, blocks: dict[str, Any]) -> tuple[Any, ...]:
-    """Distances of the box from the spheres, the same scaled and squared, and inside its sector.
+    """Distances of the box from the spheres, the same scaled and squared, and inside its way.
 
     All [m] but the second (equation 3.10); positive: clear, inside.
     """
@@ -139,5 +139,5 @@ def _collision(state: Any, right: Any, left: Any, blocks: dict[str, Any]) -> tup
         gaps.append(ca.if_else(used, ca.sqrt(square) - reach, 1.0))
         # An unused sphere reads "clear" whatever the posture.
         rows.append(ca.if_else(used, square / reach**2 - 1.0, 1.0))
-    inside = [ca.dot(box[:2], ca.vertcat(*normal)) for normal in blocks['sector']]
+    inside = [ca.dot(box, ca.vertcat(*row[:3])) + row[3] for row in blocks['way']]
     return ca.vertcat(*gaps), ca.vertcat(*rows), ca.vertcat(*inside)

@@ -119,7 +119,7 @@ SHAPES: Final[dict[str, tuple[int, int]]] = {
     'box_width': (1, 1),
     'box_turning': (1, 1),
     'box_from_hand': (1, 3),
-    'sector': (2, 2),
+    'way': (3, 4),
     'objective': (1, 2),
 }
 N_PARAMETERS: Final = sum(rows * columns for rows, columns in SHAPES.values())
@@ -164,10 +164,12 @@ class SpatialParameters:
         Moment of inertia of the box about the vertical, per mass and squared width.
     box_from_hand : array, shape (3,)
         Box centre from the middle of the hands, in the box's axes [m].
-    sector : array, shape (2, 2)
-        Level normals, inwards, of the right and left edge of the sector, seen from between the
-        ankles, in which the box is carried. Without it the least effort is to swing the box past
-        the hips, where equation 3.10 with one sphere for the box lets it pass.
+    way : array, shape (3, 4)
+        Half-spaces n x + d >= 0 in which the box's centre stays: left and right of the edges of
+        the sector, seen from between the ankles, in which it is carried, and above the lower of
+        its places. Without the first two the least effort is to swing the box past the hips, where
+        equation 3.10 with one sphere for the box lets it pass; without the third a heavy box may
+        sink into the floor.
     objective : array, shape (2,)
         Factors a and b of the objective a effort - b log(W + 10), W in N (equation 3.9 with
         weights and normalisation multiplied).
@@ -190,7 +192,7 @@ class SpatialParameters:
     box_width: float
     box_turning: float
     box_from_hand: Array
-    sector: Array
+    way: Array
     objective: Array = field(default_factory=lambda: np.array([1.0, 0.0]))
 
     def pack(self) -> Array:

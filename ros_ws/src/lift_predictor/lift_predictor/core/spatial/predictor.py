@@ -109,7 +109,7 @@ class SpatialPredictor:
         self.subject: Subject | None = None
         self.grid = SpatialGrid(self.options.n_control, self.options.n_nodes)
         self.library: NodeLibrary = spatial_library()
-        self._assembler = spatial_assembler(self.library, self.grid)
+        self.assembler = spatial_assembler(self.library, self.grid)
 
     def configure(self, subject: Subject, segments: SegmentParameters | None = None) -> None:
         """Set the subject, and the segments of the skeleton if they are not to be estimated.
@@ -126,9 +126,16 @@ class SpatialPredictor:
         self.subject = subject
 
     def task(
-        self, lift: Lift, box: Box, mass: tuple[float, float] | None = None
+        self,
+        lift: Lift,
+        box: Box,
+        mass: tuple[float, float] | None = None,
+        ground_windows: bool = True,
     ) -> SpatialTask:
-        """Task of a recorded lift with this predictor's windows; see `task.recorded_task`."""
+        """Task of a recorded lift with this predictor's windows; see `task.recorded_task`.
+
+        Without ground windows (3.16, 5.1) the weight may be another one.
+        """
         if self.person is None:
             raise TaskError('subject: none was configured before the first lift')
         if not lift.report.ok:
@@ -136,7 +143,8 @@ class SpatialPredictor:
                 f'{lift.lift_id}: the recorded lift is not good data '
                 f'({lift.report.status.name}: {lift.report.message})'
             )
-        return recorded_task(self.person, lift, box, self.grid, self.options.windows, mass)
+        task = recorded_task(self.person, lift, box, self.grid, self.options.windows, mass)
+        return task if ground_windows else without_ground_windows(task)
 
     def predict(self, lift: Lift, box: Box) -> PredictedLift3D:
         """Solve the task of one recorded lift for the given weight.
@@ -235,7 +243,7 @@ class SpatialPredictor:
     def _run(
         self, task: SpatialTask, name: str, x0: Array, warm: Solution | None = None
     ) -> SpatialOptimum:
-        programme = spatial_programme(self._assembler, self.grid, task.parameters, task.bounds)
+        programme = spatial_programme(self.assembler, self.grid, task.parameters, task.bounds)
         x0 = np.clip(x0, programme.lower, programme.upper)
         options = InteriorPointOptions(
             max_iterations=self.options.max_iterations,

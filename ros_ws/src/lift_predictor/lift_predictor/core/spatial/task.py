@@ -32,6 +32,9 @@ Array = NDArray[np.float64]
 SECTOR_MARGIN: Final = float(np.radians(20.0))
 """How far the box may leave the sector of its way to either side (our choice) [rad]."""
 
+LOWEST_MARGIN: Final = 2e-3
+"""How far the box may sink below the lower of its places: what the grip gives [m]."""
+
 KEY_JOINTS: Final = (
     *(f'{joint}_{side}' for side in SIDES for joint in (
         'ankle_angle', 'knee_angle', 'hip_flexion', 'elbow_flex',
@@ -162,20 +165,22 @@ class PlacedBox:
         half = 0.5 * self.width * left
         return np.hstack((self.places - half, self.places + half))
 
-    def sector(self, way: Array | None = None) -> Array:
-        """Edges of the sector between start and end as `SpatialParameters.sector`.
+    def way(self, recorded: Array | None = None) -> Array:
+        """Half-spaces of `SpatialParameters.way`.
 
         Parameters
         ----------
-        way : array, shape (n, 3), optional
-            A recorded way that belongs to it too [m].
+        recorded : array, shape (n, 3), optional
+            A recorded way of the hands' middle, which belongs to it too [m].
 
         Raises
         ------
         TaskError
             The sector, with its margins, is wider than half a turn.
         """
-        places = self.places if way is None else np.vstack((self.places[:1], way, self.places[1:]))
+        places = self.places
+        if recorded is not None:
+            places = np.vstack((self.places[:1], recorded, self.places[1:]))
         seen = np.unwrap(np.arctan2(places[:, 1], places[:, 0]))
         right, left = seen.min() - SECTOR_MARGIN, seen.max() + SECTOR_MARGIN
         if left - right >= np.pi:
@@ -183,7 +188,14 @@ class PlacedBox:
                 f'box: its way turns {np.degrees(np.ptp(seen)):.0f} deg round the ankles; at most '
                 f'{180.0 - 2.0 * np.degrees(SECTOR_MARGIN):.0f} deg can be predicted'
             )
-        return np.array([[-np.sin(right), np.cos(right)], [np.sin(left), -np.cos(left)]])
+        lowest = float(places[:, 2].min() + self.from_hand[2]) - LOWEST_MARGIN
+        return np.array(
+            [
+                [-np.sin(right), np.cos(right), 0.0, 0.0],
+                [np.sin(left), -np.cos(left), 0.0, 0.0],
+                [0.0, 0.0, 1.0, -lowest],
+            ]
+        )
 
 
 def place_task(
@@ -237,7 +249,7 @@ def place_task(
         # A uniform cuboid.
         box_turning=(box.depth**2 + box.width**2) / (12.0 * box.width**2),
         box_from_hand=box.from_hand,
-        sector=box.sector(way),
+        way=box.way(way),
     )
     rows = plain_bounds(grid.n_nodes, person.limits(DEPENDENT), person.limits(LIMITED))
     bounds = SpatialBounds(*rows, box.grips(), np.array(box.mass), np.array(duration))

@@ -19,8 +19,8 @@ from lift_predictor.core.spatial.grid import (
     HAND_SCALE,
     LIMITED,
     NODE_ROWS,
-    SECTOR_ROWS,
     TORQUE_ROWS,
+    WAY_ROWS,
     SpatialBounds,
     SpatialGrid,
     row_slice,
@@ -44,7 +44,7 @@ TOLERANCE: Final[dict[str, float]] = {
     'balance [m]': 1e-3,
     'foot_pulled [N]': 1.0,
     'collision [m]': 1e-3,
-    'sector [m]': 1e-3,
+    'way [m]': 1e-3,
     'hand_distance [m]': 2e-3,
     'box_level [m]': 2e-3,
     'hand_position [m]': 1e-4,
@@ -71,7 +71,7 @@ class SpatialVerification:
         By the names of `TOLERANCE`, whose unit is in brackets; 0: none.
     worst : dict of str
         What is violated most in each family, and when; empty: nothing.
-    node_excess, angle_excess : array, shape (2, n_nodes, 57), (2, n_nodes, 22)
+    node_excess, angle_excess : array, shape (2, n_nodes, 58), (2, n_nodes, 22)
         How far node rows and joint angles leave their lower and upper limits in the intervals on
         both sides of each node; 0: nowhere.
     """
@@ -164,7 +164,7 @@ def verify(
         ),
         'foot_pulled [N]': (pulled, FEET, s),
         'collision [m]': (-loads.gaps, SPHERE_NAMES, s),
-        'sector [m]': (-loads.inside, ('right edge', 'left edge'), s),
+        'way [m]': (-loads.inside, ('right edge', 'left edge', 'lower place'), s),
         'hand_distance [m]': (np.abs(width - p.box_width)[:, None], ('hands',), s),
         'box_level [m]': (np.abs(apart[:, 2:]), ('hands',), s),
         'hand_position [m]': (at_ends, ('right hand', 'left hand'), s[[0, -1]]),
@@ -188,7 +188,7 @@ def verify(
 def _row_excess(
     loads: SpatialLoads, leg: tuple[Array, Array], reach: Array, weight: float
 ) -> Array:
-    """Excess of the node rows over their limits (windows and bands aside), (2, n_nodes, 57)."""
+    """Excess of the node rows over their limits (windows and bands aside), (2, n_nodes, 58)."""
     n = len(loads.share)
     low, high = np.full((2, n, len(NODE_ROWS)), -np.inf)
     span = loads.upper - loads.lower
@@ -202,7 +202,7 @@ def _row_excess(
     low[:, start + 1 : start + 3] = -loads.ground_force[:, :, 2] / weight
     low[:, row_slice(COLLISION_ROWS)] = -(((loads.gaps + reach) / reach) ** 2 - 1.0)
     low[:, row_slice(COLLISION_ROWS)][loads.gaps >= 0.0] = -np.inf
-    low[:, row_slice(SECTOR_ROWS)] = -loads.inside / HAND_SCALE
+    low[:, row_slice(WAY_ROWS)] = -loads.inside / HAND_SCALE
     return np.stack((_near_nodes(low), _near_nodes(high)))
 
 
