@@ -16,7 +16,8 @@ import pytest
 from lift_predictor.core.sagittal.grid import Grid
 from lift_predictor.core.sagittal.parameters import LiftParameters
 from lift_predictor.core.solvers import compiled
-from lift_predictor.core.solvers.compiled import build_programme, cache_directory, content_hash
+from lift_predictor.core.solvers.cache import cache_directory, find_compiler
+from lift_predictor.core.solvers.compiled import build_programme, content_hash
 
 GRID = Grid(5, 5)
 
@@ -41,7 +42,7 @@ print(build_programme(Grid(5, 5)).how)
 """
 
 
-@pytest.mark.skipif(compiled.find_compiler() is None, reason='no C compiler on this machine')
+@pytest.mark.skipif(find_compiler() is None, reason='no C compiler on this machine')
 def test_two_processes_build_one_library_with_the_numbers_of_the_virtual_machine(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, parameters: LiftParameters
 ) -> None:
@@ -98,7 +99,7 @@ def test_cache_that_cannot_be_written_is_named(
 ) -> None:
     (tmp_path / 'file').write_text('')
     monkeypatch.setenv('LIFT_CACHE', str(tmp_path / 'file' / 'below'))
-    if compiled.find_compiler() is None:
+    if find_compiler() is None:
         pytest.skip('no C compiler on this machine')
     programme = build_programme(GRID)
     assert programme.library is None

@@ -1,0 +1,99 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""The sagittal optimiser: against IPOPT, from bad starts, and when it gives up."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from lift_predictor.core.sagittal import optimiser as module
+from lift_predictor.core.sagittal.grid import Grid
+from lift_predictor.core.sagittal.optimiser import LiftOptimiser
+from lift_predictor.core.sagittal.person import Person
+from lift_predictor.core.sagittal.starts import make_starts
+from lift_predictor.core.sagittal.task import Box, LiftTask2D, build_task
+from lift_predictor.core.solvers.compiled import build_programme
+from lift_predictor.core.solvers.ipopt import LiftSolver
+from lift_predictor.core.solvers.optimum import Start
+from lift_predictor.core.solvers.solution import InteriorPointOptions, Status
+
+GRID = Grid(7, 25)
+
+
+@pytest.fixture(scope='module')
+def optimiser() -> LiftOptimiser:
+    return LiftOptimiser(GRID)
+
+
+@pytest.fixture(scope='module')
+def referee() -> LiftSolver:
+    return LiftSolver(build_programme(GRID), 60.0)
+
+
+@pytest.fixture(scope='module')
+def task(make_lift, person: Person) -> Callable[[float], LiftTask2D]:
+    return lambda mass: build_task(person, make_lift(mass), Box(mass, 0.238))
+
+
+@pytest.mark.parametrize('mass', [7.0, 12.0])
+def test_same_minimum_and_binding_limits_as_ipopt(optimiser, referee, task, mass) -> None:
+    lift = task(mass)
+    vector = lift.parameters.pack()
+    for start in make_starts(lift, GRID.spline):
+        own = optimiser.solve(vector, lift.bounds, start)
+        other = referee.solve(vector, lift.bounds, start)
+        assert own.converged and other.converged
+        assert own.objective == pytest.approx(other.objective, rel=1e-6)
+        np.testing.assert_allclose(own.control, other.control, atol=1e-3)
+        strong = {name: size for name, size in other.binding if size > 1e-3}
+        found = dict(own.binding)
+        for name, size in strong.items():
+            assert found[name] == pytest.approx(size, rel=0.05)
+
+
+def test_near_start_that_fails_is_solved_with_a_large_barrier(
+    monkeypatch: pytest.MonkeyPatch, optimiser, task
+) -> None:
+    lift = task(7.0)
+    vector, start = lift.parameters.pack(), make_starts(lift, GRID.spline)[0]
+    good = optimiser.solve(vector, lift.bounds, start)
+    monkeypatch.setattr(module, 'NEAR_OPTIONS', InteriorPointOptions(max_iterations=2))
+    run = optimiser.solve(vector, lift.bounds, Start('near', start.control, near=True))
+    assert run.converged
+    assert run.objective == pytest.approx(good.objective, rel=1e-9)
+    assert run.iterations == good.iterations + 2
+
+
+def test_near_start_stays_at_its_minimum(optimiser, task) -> None:
+    lift = task(12.0)
+    vector = lift.parameters.pack()
+    first = optimiser.solve(vector, lift.bounds, make_starts(lift, GRID.spline)[1])
+    again = optimiser.solve(vector, lift.bounds, first.as_start())
+    assert again.converged
+    assert again.objective == pytest.approx(first.objective, rel=1e-7)
+
+
+def test_ipopt_is_tried_and_named_where_no_start_gives_an_answer(
+    monkeypatch: pytest.MonkeyPatch, optimiser, task
+) -> None:
+    lift = task(7.0)
+    monkeypatch.setattr(module, 'LIFT_OPTIONS', InteriorPointOptions(max_iterations=2))
+    starts = make_starts(lift, GRID.spline)[:2]
+    runs = optimiser.solve_all(lift.parameters.pack(), lift.bounds, starts)
+    assert runs[0].converged
+    assert runs[0].start.endswith(', IPOPT')
+    assert [run.outcome for run in runs[2:]] == [Status.ITERATION_LIMIT] * 2
+
+
+def test_infeasible_lift_is_not_given_to_ipopt(
+    monkeypatch: pytest.MonkeyPatch, optimiser, task
+) -> None:
+    lift = task(30.0)
+    starts = make_starts(lift, GRID.spline)
+    runs = optimiser.solve_all(lift.parameters.pack(), lift.bounds, starts)
+    assert len(runs) == len(starts)
+    assert {run.outcome for run in runs} == {Status.INFEASIBLE}
+    assert 'joint torque limit' in runs[0].violated
