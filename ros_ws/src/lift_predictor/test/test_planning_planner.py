@@ -105,8 +105,22 @@ def test_out_of_reach_is_a_report(planner, subject) -> None:
     nowhere = replace(TASK, end=(0.55, 0.0, 2.4), feet=None)
     with pytest.raises(UnreachableError, match=r'task\.feet: from none of 5 places'):
         place_feet(planner.predictor, nowhere, Weighting())
-    aside = planner.plan(subject, replace(TASK, end=(0.4, 0.4, 1.0)))
+    aside = planner.plan(subject, replace(TASK, end=(0.4, 0.4, 1.0), technique='squat'))
     assert aside.report.status is SolveStatus.PREDICTOR_BAD_INPUT
+    assert "task.technique: 'squat'" in aside.report.message
+
+
+def test_box_at_the_side_is_planned_in_space(planner, subject) -> None:
+    task = replace(TASK, box_mass=5.0, start=(0.4, 0.0, 0.3), end=(0.3, 0.3, 1.0))
+    aside = planner.plan(subject, task)
+    assert aside.report.ok, aside.report.message
+    motion = aside.prediction.lift.motion
+    assert motion.skeleton == '3d_40dof'
+    np.testing.assert_allclose(motion.box_position[[0, -1]], [task.start, task.end], atol=1e-3)
+    assert all(np.isfinite(value) for value in aside.prediction.verification.violation.values())
+    summary = summarise(aside)
+    assert summary.effort > 0.0
+    assert summary.effort == pytest.approx(aside.report.objective, rel=0.05)
 
 
 def test_listener_ends_the_work_between_two_runs(planner, subject) -> None:

@@ -168,21 +168,31 @@ def _plain(
         'l5_s1': None if spine is None else asdict(spine),
         'verification': None if verification is None else verification.violation,
         'placements': [asdict(placement) for placement in planned.placements],
-        'runs': [
-            {
-                'start': run.start,
-                'converged': run.converged,
-                'outcome': run.outcome,
-                'objective': run.objective,
-                'iterations': run.iterations,
-                'violation': run.violation,
-                'solve_time': run.solve_time,
-            }
-            for run in planned.prediction.optima
-        ],
+        'runs': [_run(run) for run in planned.prediction.optima],
     }
     cleaned: dict[str, Any] = _finite(whole)
     return cleaned
+
+
+def _run(run: Any) -> dict[str, Any]:
+    """Return one run of the optimiser, sagittal or in space."""
+    plain = {'start': run.start, 'converged': run.converged}
+    if hasattr(run, 'solution'):
+        ended = run.solution
+        return plain | {
+            'outcome': str(ended.status),
+            'objective': ended.objective,
+            'iterations': ended.iterations,
+            'violation': ended.primal,
+            'solve_time': ended.solve_time,
+        }
+    return plain | {
+        'outcome': run.outcome,
+        'objective': run.objective,
+        'iterations': run.iterations,
+        'violation': run.violation,
+        'solve_time': run.solve_time,
+    }
 
 
 def _finite(value: Any) -> Any:

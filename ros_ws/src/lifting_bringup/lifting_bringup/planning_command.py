@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from lifting_bringup.planned_results import PlanFiles, SpinePeak
 
 
+SHOWN = 8
+"""Joints that are printed; all are in plan.json."""
+
+
 def add_to(commands: Any) -> None:
     """Add the command to the parsers of `lift`."""
     parser = commands.add_parser(
@@ -92,16 +96,20 @@ def described(planned: PlannedLift, files: PlanFiles) -> list[str]:
         f'feet     ankles at forward {summary.ankle:.3f} m{feet}',
         f'effort   {summary.effort:.4f} s',
         f'posture  Stoop-Squat-Index {summary.technique_index:.0f} at the start '
-        f'(asked for: {task.technique})',
-        'joint torques nearest to their limits, both limbs [N m]:',
+        f'(asked for: {task.technique})'
+        if not task.lies_aside
+        else 'posture  in space: the box lies beside the sagittal plane',
+        'joint torques nearest to their limits [N m]; both limbs in the sagittal plane:',
     ]
     lines += [
         f'  {peak.joint:<17} {peak.torque:8.1f} of {peak.limit:8.1f}  {100 * peak.share:5.1f} %  '
         f'at {peak.time:.2f} s'
-        for peak in summary.peaks
+        for peak in sorted(summary.peaks, key=lambda peak: -peak.share)[:SHOWN]
     ]
     lines += [
-        f'limits touched: {"; ".join(_grouped(summary.binding)) or "none"}',
+        f'limits touched: {"; ".join(_grouped(summary.binding)) or "none"}'
+        if not task.lies_aside
+        else 'limits touched: not listed for lifts in space',
         f'ground reaction: up to {summary.peak_vertical_force:.0f} N vertical, '
         f'{summary.largest_horizontal_force:.0f} N horizontal',
         'box path (s: forward, up m): '

@@ -30,7 +30,7 @@ tasks:
   - {name: given, box_mass: 5.0, box_size: [0.24, 0.3, 0.13], start: [0.37, 0, 0.07],
      end: [0.5, 0, 0.95], feet: [0, 0]}
   - {name: aside, box_mass: 5.0, box_size: [0.24, 0.3, 0.13], start: [0.37, 0, 0.07],
-     end: [0.5, 0.5, 0.95], feet: [0, 0]}
+     end: [0.5, 0.5, 0.95], feet: [0, 0], technique: squat}
 """
 
 

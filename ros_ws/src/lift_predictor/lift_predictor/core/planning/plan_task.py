@@ -117,6 +117,11 @@ class PlanTask:
         """How far the sagittal plane lies to the left of the laboratory's origin [m]."""
         return self.start[1] if self.feet is None else self.feet[1]
 
+    @property
+    def lies_aside(self) -> bool:
+        """Whether a place of the box is out of the sagittal plane of feet that are given."""
+        return self.feet is not None and self.asymmetry(self.feet[0]) > LATERAL_TOLERANCE
+
     def asymmetry(self, ankle: float) -> float:
         """Largest angle of a place of the box out of the sagittal plane [rad].
 

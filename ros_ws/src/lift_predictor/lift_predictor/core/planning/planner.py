@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from human_model.errors import HumanModelError
 from human_model.report import SolveReport, SolveStatus
@@ -20,6 +20,9 @@ from lift_predictor.core.planning.solve import Listener, SolvedPlan, solve_plan
 from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.sagittal.feasibility import HOPELESS, with_nearest
 from lift_predictor.core.sagittal.prediction import NearestLift, PredictedLift2D
+
+if TYPE_CHECKING:
+    from lift_predictor.core.spatial.prediction import PredictedLift3D
 
 STARTS: Final = 4
 """Made-up initial guesses for the lift itself."""
@@ -37,8 +40,8 @@ class PlannedLift:
         Who lifts.
     task : PlanTask
         What was asked for.
-    prediction : PredictedLift2D
-        The lift; its report says whether there is one.
+    prediction : PredictedLift2D or PredictedLift3D
+        The lift; its report says whether there is one. In space where the box lies aside.
     ankle : float
         Middle of the ankles, forward [m]; NaN where none was found or the task was refused.
     index : float
@@ -46,21 +49,31 @@ class PlannedLift:
     placements : tuple of Placement
         Places that were tried, if the feet were free.
     binding : tuple of str
-        Limits that the lift touches, the one that costs most first.
+        Limits that the lift touches, the one that costs most first; sagittal plans only.
+    effort : float
+        Effort of a lift in space (first term of equation 3.9) [s]; otherwise NaN.
     """
 
     subject: Subject
     task: PlanTask
-    prediction: PredictedLift2D
+    prediction: PredictedLift2D | PredictedLift3D
     ankle: float
     index: float
     placements: tuple[Placement, ...]
     binding: tuple[str, ...]
+    effort: float = float('nan')
 
     @property
     def report(self) -> SolveReport:
         """Report of the solve; status 0: good data."""
         return self.prediction.report
+
+
+@dataclass(frozen=True, eq=False)
+class SagittalPlan(PlannedLift):
+    """A planned lift in the sagittal plane."""
+
+    prediction: PredictedLift2D
 
 
 class LiftPlanner:
@@ -110,7 +123,7 @@ class LiftPlanner:
         weights = weighting or self.weighting
         planned = self._plan(subject, task, listener, weights)
         failed = planned.prediction
-        if failed.report.status not in HOPELESS:
+        if failed.report.status not in HOPELESS or not isinstance(failed, PredictedLift2D):
             return planned
         nearest: NearestLift | None = None
         if failed.report.status is not SolveStatus.PREDICTOR_UNREACHABLE and task.box_mass:
@@ -118,7 +131,7 @@ class LiftPlanner:
             nearest = self._lighter(task, planned.ankle)
         if nearest is None:
             nearest = nearest_plan(
-                lambda other: self._plan(subject, other, listener, weights, PROBES).prediction,
+                lambda other: self._sagittal(subject, other, listener, weights, PROBES).prediction,
                 task,
                 failed,
             )
@@ -132,13 +145,31 @@ class LiftPlanner:
         return self.predictor.lighter_lift(plan.task, starts)
 
     def _plan(
+        self, subject: Subject, task: PlanTask, listener: Listener | None, weights: Weighting
+    ) -> PlannedLift:
+        if task.feet is None or not task.lies_aside:
+            return self._sagittal(subject, task, listener, weights)
+        # Sagittal plans, which are most, need not load it.
+        from lift_predictor.core.planning.aside import solve_aside
+
+        try:
+            self.predictor.configure(subject)
+            solved = solve_aside(self.predictor, task, weights, listener)
+        except (TaskError, UnreachableError, HumanModelError) as error:
+            return _refused(subject, task, error)
+        nan = float('nan')
+        return PlannedLift(
+            subject, task, solved.prediction, task.feet[0], nan, (), (), solved.effort
+        )
+
+    def _sagittal(
         self,
         subject: Subject,
         task: PlanTask,
         listener: Listener | None,
         weights: Weighting,
         n_starts: int = STARTS,
-    ) -> PlannedLift:
+    ) -> SagittalPlan:
         try:
             self.predictor.configure(subject)
             if task.feet is not None:
@@ -167,8 +198,8 @@ def plan(
 
 def _planned(
     subject: Subject, task: PlanTask, solved: SolvedPlan, placements: tuple[Placement, ...]
-) -> PlannedLift:
-    return PlannedLift(
+) -> SagittalPlan:
+    return SagittalPlan(
         subject=subject,
         task=task,
         prediction=solved.prediction,
@@ -179,7 +210,7 @@ def _planned(
     )
 
 
-def _refused(subject: Subject, task: PlanTask, error: Exception) -> PlannedLift:
+def _refused(subject: Subject, task: PlanTask, error: Exception) -> SagittalPlan:
     unreachable = isinstance(error, UnreachableError)
     status = (
         SolveStatus.PREDICTOR_UNREACHABLE if unreachable else SolveStatus.PREDICTOR_BAD_INPUT
@@ -189,4 +220,4 @@ def _refused(subject: Subject, task: PlanTask, error: Exception) -> PlannedLift:
     prediction = PredictedLift2D.failed(
         task.name, mass, task.duration, SolveReport(status, str(error))
     )
-    return PlannedLift(subject, task, prediction, nan, nan, (), ())
+    return SagittalPlan(subject, task, prediction, nan, nan, (), ())

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -86,11 +87,13 @@ def summarise(planned: PlannedLift) -> PlanSummary | None:
         :, [motion.point_names.index(f'hand_{side}') for side in 'rl']
     ].mean(axis=1)
     box = np.where(np.isfinite(motion.box_position), motion.box_position, hands)
-    span = prediction.torque_upper - prediction.torque_lower
-    effort = (prediction.torque / span)[:, :-1]
+    effort = planned.effort
+    if math.isnan(effort):
+        span = prediction.torque_upper - prediction.torque_lower
+        effort = float(np.trapezoid(((prediction.torque / span)[:, :-1] ** 2).sum(axis=1), time))
     return PlanSummary(
         box_mass=prediction.box_mass,
-        effort=float(np.trapezoid((effort**2).sum(axis=1), time)),
+        effort=effort,
         duration=prediction.duration,
         technique_index=planned.index,
         ankle=planned.ankle,
