@@ -15,12 +15,13 @@ from human_model.errors import HumanModelError
 from lifting_bringup.graph_errors import SessionError
 from lifting_bringup.recorded_emg import recorded_emg
 from lifting_bringup.recorded_lifts import recorded_lifts
+from lifting_bringup.report.emg_page import build_emg_page
 from muscle_analyzer.core.analyzer import MuscleAnalyzer
 from muscle_analyzer.core.emg import OWN_MAXIMUM, normalised_envelopes
 from muscle_analyzer.core.emg_comparison import EmgMatch, compare_emg
 from muscle_analyzer.core.exceptions import MuscleAnalyzerError
 
-REPORT = 'emg.json'
+NUMBERS, PAGE = 'emg.json', 'emg.html'
 
 
 @dataclass(frozen=True)
@@ -49,7 +50,7 @@ class CompareEmgOptions:
 
 
 def compare_recorded_emg(options: CompareEmgOptions) -> tuple[EmgMatch, ...]:
-    """Compare the EMG of a lift with its computed activations and write the curves.
+    """Compare the EMG of a lift with its computed activations; write numbers and a page.
 
     Raises
     ------
@@ -73,7 +74,9 @@ def compare_recorded_emg(options: CompareEmgOptions) -> tuple[EmgMatch, ...]:
         raise SessionError(str(error)) from error
     options.output.mkdir(parents=True, exist_ok=True)
     text = json.dumps([_plain(match) for match in matches], indent=1)
-    (options.output / REPORT).write_text(text + '\n', encoding='utf-8')
+    (options.output / NUMBERS).write_text(text + '\n', encoding='utf-8')
+    title = f'{options.bag.name}, {lift.lift_id}'
+    build_emg_page(matches, title, options.output / PAGE)
     return matches
 
 

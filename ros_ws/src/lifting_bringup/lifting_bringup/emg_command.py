@@ -45,7 +45,8 @@ def _mvc(text: str) -> tuple[str, float]:
 
 def _run(options: argparse.Namespace) -> int:
     from lifting_bringup.compare_emg import (
-        REPORT,
+        NUMBERS,
+        PAGE,
         CompareEmgOptions,
         compare_recorded_emg,
         table,
@@ -62,5 +63,6 @@ def _run(options: argparse.Namespace) -> int:
         )
     )
     print(table(matches))
-    print(f'curves: {output / REPORT}')
+    print(f'curves  {output / PAGE}')
+    print(f'numbers {output / NUMBERS}')
     return 0

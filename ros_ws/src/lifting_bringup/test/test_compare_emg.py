@@ -3,6 +3,7 @@
 """`lift compare-emg` on a recording whose EMG is made from the activations computed for it."""
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -118,6 +119,11 @@ def test_course_and_phase_come_back(bag_with_emg, tmp_path, capsys):
     assert main([*arguments, '--mvc', 'VML=0.002', '--out', str(tmp_path)]) == 0
     printed = capsys.readouterr().out
     assert 'EMG1: divided by the maximum of the recording' in printed
+    page = (tmp_path / 'emg.html').read_text(encoding='utf-8')
+    for words in ('with_emg, lift_001', 'Vastus lateralis, right', 'Vastus medialis, left'):
+        assert words in page
+    assert page.count('<svg') == 1
+    assert re.search(r'<td>VML</td>.*?<td>MVC</td>', page)
     first, second = json.loads((tmp_path / 'emg.json').read_text(encoding='utf-8'))
     assert (first['muscle'], first['side']) == ('Vastus lateralis', 'r')
     assert (second['muscle'], second['normalised_by']) == ('Vastus medialis', 'MVC')
