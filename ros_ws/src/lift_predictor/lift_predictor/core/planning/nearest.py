@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -58,10 +59,10 @@ def nearest_plan(
         if length == 0.0:
             continue
         found = closer_lift(
-            lambda share, moved=moved: plan(_on_the_way(task, moved, share)),
+            partial(_planned_on_the_way, plan, task, moved),
             failed,
             length,
-            lambda share, way=way: missing_way(way, share),
+            partial(missing_way, way),
         )
         if found is not None:
             return found
@@ -84,10 +85,16 @@ def standard(task: PlanTask, name: str) -> Point:
     return (x, y, max(STANDARD_HEIGHT + task.box_from_grip[1], 0.5 * task.box_size[2]))
 
 
+def _planned_on_the_way(
+    plan: PlanPrediction, task: PlanTask, moved: tuple[str, ...], share: float
+) -> PredictedLift2D:
+    return plan(_on_the_way(task, moved, share))
+
+
 def _on_the_way(task: PlanTask, moved: tuple[str, ...], share: float) -> PlanTask:
-    places = {}
+    places = {'start': task.start, 'end': task.end}
     for name in moved:
         near, asked = np.array(standard(task, name)), np.array(getattr(task, name))
         x, y, z = near + share * (asked - near)
         places[name] = (float(x), float(y), float(z))
-    return replace(task, **places)
+    return replace(task, start=places['start'], end=places['end'])
