@@ -66,6 +66,7 @@ def snapshots(recorded: BodyMotion, predicted: BodyMotion) -> Figure:
                 box = motion.box_position[at]
                 panel.plot(box[0] if axis == 0 else -box[1], box[2], 's', color=ORANGE, ms=7)
                 panel.set_aspect('equal')
+                panel.locator_params(axis='x', nbins=3)
                 if view == 0 and which == 0:
                     panel.set_title(f'{100 * part:.0f} %')
             line[0].set_ylabel(f'{name}\n{label}\n[m]')

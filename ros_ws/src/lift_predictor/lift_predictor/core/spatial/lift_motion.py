@@ -73,6 +73,16 @@ def body_motion(
     )
 
 
+def feet_moved(task: SpatialTask, motion: BodyMotion) -> float:
+    """Largest distance of an ankle of the skeleton from where it stands [m].
+
+    The closed form of the legs holds for a list of the pelvis of up to half a radian.
+    """
+    ankles = np.stack([motion.point(f'ankle_{side}') for side in SIDES], axis=1)
+    off = np.linalg.norm(ankles - task.frame.to_world(task.frame.ankle), axis=2)
+    return float(off.max())
+
+
 def joint_torques(task: SpatialTask, motion: BodyMotion) -> tuple[Array, Array, Array]:
     """Torques of all joints (n, 34) by the skeleton's own inverse dynamics, and their limits.
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 
@@ -19,7 +20,9 @@ from lift_predictor.core.spatial.predictor import SpatialPredictor
 from lift_predictor.core.spatial.starts import SpatialStart
 from lift_predictor.core.spatial.task import SpatialTask
 
-_DENSE = 401
+_DENSE: Final = 401
+FAR: Final = 0.1
+"""First barrier parameter of the starts that are to find other minima."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +81,10 @@ def maximum_weight(
     """
     weighting = weighting or Weighting()
     pure = _with_objective(task, (TIE_BREAK, 1.0))
-    heaviest = predictor.solve_task(pure, starts)
+    far = tuple(
+        replace(start, name=f'{start.name}, far', barrier=FAR) for start in starts
+    )
+    heaviest = predictor.solve_task(pure, (*starts, *far))
     first = _result(predictor, pure, Weighting(0.0, 1.0), heaviest, None)
     scale = first.normalisation
     if scale is None or weighting == first.weighting:
@@ -87,9 +93,8 @@ def maximum_weight(
         task, (weighting.effort / scale.effort, weighting.box / scale.log_weight)
     )
     near = SpatialStart('heaviest box', heaviest.control, heaviest.box_mass, heaviest.duration)
-    return _result(
-        predictor, weighted, weighting, predictor.solve_task(weighted, (near,)), scale
-    )
+    best = predictor.solve_task(weighted, (near, *far))
+    return _result(predictor, weighted, weighting, best, scale)
 
 
 def total_effort(

@@ -26,7 +26,12 @@ from lift_predictor.core.spatial.comparison import SpatialComparison, compare
 from lift_predictor.core.spatial.evaluation import evaluate, sample
 from lift_predictor.core.spatial.feasibility import with_lighter_lift
 from lift_predictor.core.spatial.grid import SpatialGrid
-from lift_predictor.core.spatial.lift_motion import body_motion, joint_torques, sample_times
+from lift_predictor.core.spatial.lift_motion import (
+    body_motion,
+    feet_moved,
+    joint_torques,
+    sample_times,
+)
 from lift_predictor.core.spatial.person import COEFFICIENT_SET, SpatialPerson
 from lift_predictor.core.spatial.prediction import PredictedLift3D, SpatialOptimum
 from lift_predictor.core.spatial.programme import (
@@ -47,6 +52,8 @@ Array = NDArray[np.float64]
 Progress = Callable[[int, int, float], None]
 """Told after each run: starts tried, starts in all, best objective so far (NaN: none yet)."""
 
+FOOT_TOLERANCE: Final = 1e-6
+"""Distance of the feet from their place above which there are no data [m]."""
 MARGIN_FACTOR: Final = 1.2
 """Margin against a violation between the nodes, in units of the violation."""
 
@@ -85,7 +92,7 @@ class SpatialOptions:
     windows: Windows = field(default_factory=Windows)
     coefficient_set: str = COEFFICIENT_SET
     max_iterations: int = 400
-    time_limit: float = 20.0
+    time_limit: float = 30.0
     refinements: int = 5
     barrier: float = 1e-3
 
@@ -219,12 +226,14 @@ class SpatialPredictor:
         """
         now = time.perf_counter()
         begin = now if begin is None else begin
-        deadline = begin + self.options.time_limit
+        deadline = now + self.options.time_limit
         runs: list[SpatialOptimum] = []
         for start in starts:
             if runs and time.perf_counter() > deadline:
                 break
-            runs.append(self._run(task, start.name, start.variables(), warm))
+            runs.append(
+                self._run(task, start.name, start.variables(), warm, start.barrier)
+            )
             if progress is not None:
                 solved = [run.solution.objective for run in runs if run.converged]
                 progress(len(runs), len(starts), min(solved, default=float('nan')))
@@ -241,14 +250,19 @@ class SpatialPredictor:
         return self._finish(task, optima, check, now - begin, time.perf_counter() - now)
 
     def _run(
-        self, task: SpatialTask, name: str, x0: Array, warm: Solution | None = None
+        self,
+        task: SpatialTask,
+        name: str,
+        x0: Array,
+        warm: Solution | None = None,
+        barrier: float | None = None,
     ) -> SpatialOptimum:
         programme = spatial_programme(self.assembler, self.grid, task.parameters, task.bounds)
         x0 = np.clip(x0, programme.lower, programme.upper)
         options = InteriorPointOptions(
             max_iterations=self.options.max_iterations,
             time_limit=self.options.time_limit,
-            barrier=self.options.barrier,
+            barrier=barrier or self.options.barrier,
         )
         return SpatialOptimum(name, solve(programme, x0, options, warm))
 
@@ -309,6 +323,15 @@ class SpatialPredictor:
         splined = sample(self.grid, control, times / duration, duration)
         loads = evaluate(self.library, *splined, mass, task.parameters)
         motion = body_motion(task, task.start + times, splined, loads, mass > 0.0)
+        slipped = feet_moved(task, motion)
+        if slipped > FOOT_TOLERANCE:
+            message = f'the feet are {1e3 * slipped:.3g} mm off their place; {message}'
+            report = replace(
+                report, status=SolveStatus.PREDICTOR_VERIFICATION_FAILED, message=message
+            )
+            return PredictedLift3D.failed(
+                task.lift_id, mass, duration, report, optima, check, notes
+            )
         torque, lower, upper = joint_torques(task, motion)
         sole = np.array(
             [[a[0] + np.cos(t) * s for s in task.parameters.sole] for a, t in zip(

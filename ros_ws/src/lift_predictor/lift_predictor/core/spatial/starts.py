@@ -20,12 +20,17 @@ _DENSE: Final = 41
 
 @dataclass(frozen=True, eq=False)
 class SpatialStart:
-    """Named initial guess: free control values (n_free, 26), box mass [kg], duration [s]."""
+    """Named initial guess: free control values (n_free, 26), box mass [kg], duration [s].
+
+    A barrier parameter of its own, if there is one, is the method's first one: a large one leaves
+    the start behind and finds other minima.
+    """
 
     name: str
     control: Array
     box_mass: float
     duration: float
+    barrier: float | None = None
 
     def variables(self) -> Array:
         """Variables of the programme."""
