@@ -50,7 +50,9 @@ class _VirtualGroup:
         local = np.zeros((points, f.n_in, f.n_in))
         local[:, f.hessian_row, f.hessian_column] = out
         local[:, f.hessian_column, f.hessian_row] = out
-        return np.asarray(np.einsum('bim,bij,bjn->mn', self.gather, local, self.gather))
+        n = self.gather.shape[2]
+        half = (local @ self.gather).reshape(-1, n)
+        return np.asarray(self.gather.reshape(-1, n).T @ half)
 
 
 class VirtualAssembler:
