@@ -31,6 +31,7 @@ from lift_predictor.core.sagittal.feasibility import (
 from lift_predictor.core.sagittal.grid import Grid
 from lift_predictor.core.sagittal.lift_motion import body_motion, mtp_torque, sample_times
 from lift_predictor.core.sagittal.optimiser import LiftOptimiser
+from lift_predictor.core.sagittal.outcome import judge
 from lift_predictor.core.sagittal.person import COEFFICIENT_SET, Person
 from lift_predictor.core.sagittal.prediction import TORQUE_NAMES, NearestLift, PredictedLift2D
 from lift_predictor.core.sagittal.solved_lifts import library_starts
@@ -38,7 +39,6 @@ from lift_predictor.core.sagittal.starts import make_starts
 from lift_predictor.core.sagittal.task import POSTURE_TOLERANCE, Box, LiftTask2D, build_task
 from lift_predictor.core.sagittal.verify import Verification, verify
 from lift_predictor.core.solvers.optimum import Optimum, Progress, Start
-from lift_predictor.core.solvers.solution import Status
 
 if TYPE_CHECKING:
     # They import CasADi, which a lift in the plane does without.
@@ -47,10 +47,6 @@ if TYPE_CHECKING:
     from lift_predictor.core.spatial.predictor import SpatialOptions, SpatialPredictor
 
 Array = NDArray[np.float64]
-
-TIMED_OUT: Final = (Status.TIME_LIMIT, 'Maximum_WallTime_Exceeded')
-INFEASIBLE: Final = (Status.INFEASIBLE, 'Infeasible_Problem_Detected')
-"""In our solver's words and in IPOPT's."""
 
 MARGIN_FACTOR: Final = 1.05
 """First margin against a violation between the nodes, in units of the violation; twice as much
@@ -291,7 +287,7 @@ class LiftPredictor:
             starts = (*starts, *library_starts(self.programme.grid.spline))
         optima = self.programme.solve_all(vector, task.bounds, starts, deadline, progress)
         optima, check = self._tighten(task, vector, optima, deadline)
-        status, message = _judge(optima[0], check)
+        status, message = judge(optima[0], check)
         notes = (*task.notes, self.programme.how)
         report = SolveReport(
             status,
@@ -388,19 +384,3 @@ def _require_good(lift: Lift) -> None:
             f'{lift.lift_id}: the recorded lift is not good data '
             f'({lift.report.status.name}: {lift.report.message})'
         )
-
-
-def _judge(best: Optimum, check: Verification | None) -> tuple[SolveStatus, str]:
-    if best.converged and check is not None and check.passed:
-        return SolveStatus.OK, f'optimal from the start "{best.start}"'
-    if best.converged and check is not None:
-        return (
-            SolveStatus.PREDICTOR_VERIFICATION_FAILED,
-            f'between the nodes constraints are violated: {check.failures()}',
-        )
-    detail = f'largest violation: {best.violated or "none"} ({best.violation:.3g})'
-    if best.outcome in TIMED_OUT:
-        return SolveStatus.PREDICTOR_TIME_LIMIT, f'time limit reached; {detail}'
-    if best.outcome in INFEASIBLE:
-        return SolveStatus.PREDICTOR_INFEASIBLE, f'no feasible motion was found; {detail}'
-    return SolveStatus.PREDICTOR_NOT_CONVERGED, f'not solved: {best.outcome}; {detail}'
