@@ -18,11 +18,12 @@ from muscle_analyzer.core.functions import (
     piecewise_linear,
     polynomial,
     simm_spline,
+    smooth_step,
 )
 from muscle_analyzer.core.kinematics import body_jacobians, forward_kinematics
 from muscle_analyzer.core.multibody import compile_model
 from muscle_analyzer.core.muscle_path_table import path_table
-from muscle_analyzer.core.muscle_paths import muscle_paths
+from muscle_analyzer.core.muscle_paths import posture_paths
 from muscle_analyzer.core.opensim.meshes import read_meshes, scaled_meshes
 from muscle_analyzer.core.opensim.model_writer import write_osim
 from muscle_analyzer.core.opensim.xml_functions import function_element, xyz_angles
@@ -71,24 +72,34 @@ def test_muscle_parameters_are_equal(lifting_model, again):
             assert getattr(other, field) == getattr(muscle, field)
 
 
-def test_poses_lengths_and_moment_arms_are_equal(lifting_model, again):
-    """In random postures inside the ranges of the coordinates."""
-    models = [compile_model(lifting_model), compile_model(again)]
+def same_mechanics(model, other):
+    """Compare poses, lengths and moment arms of two models in random postures."""
+    models = [compile_model(model), compile_model(other)]
     first = models[0]
     low, high = (np.clip(side, -2.0, 2.0) for side in (first.lower, first.upper))
     rng = np.random.default_rng(4)
     for _ in range(3):
         q = low + (high - low) * rng.uniform(0.2, 0.8, low.size)
         found = []
-        for model in models:
-            state = forward_kinematics(model.tree, q, 0.1 * q, 0.2 * q)
-            arms = muscle_paths(
-                path_table(model), state.position, state.rotation,
-                body_jacobians(model.tree, state),
-            )  # fmt: skip
-            found.append((state.position, state.acceleration, arms.length, arms.moment_arm))
+        for each in models:
+            state = forward_kinematics(each.tree, q, 0.1 * q, 0.2 * q)
+            jacobian = body_jacobians(each.tree, state)
+            paths = posture_paths(path_table(each), state, jacobian)
+            found.append((state.position, state.acceleration, paths.length, paths.moment_arm))
         for ours, theirs in zip(*found, strict=True):
             np.testing.assert_allclose(theirs, ours, rtol=0.0, atol=1e-10)
+
+
+def test_poses_lengths_and_moment_arms_are_equal(lifting_model, again):
+    same_mechanics(lifting_model, again)
+
+
+def test_a_model_with_one_of_everything_comes_back(tmp_path):
+    """All joints, functions, surfaces, points and muscles that the reader knows."""
+    model = read_osim(Path(__file__).parent / 'reference' / 'specimens.osim')
+    path = tmp_path / 'specimens.osim'
+    write_osim(path, model)
+    same_mechanics(model, read_osim(path))
 
 
 def test_conditional_and_moving_points_come_back(write_model, tmp_path):
@@ -127,6 +138,7 @@ def test_conditional_and_moving_points_come_back(write_model, tmp_path):
          'PolynomialFunction'),
         (piecewise_linear([0.0, 1.0, 3.0], [0.0, 2.0, 1.0]), 'PiecewiseLinearFunction'),
         (simm_spline([0.0, 1.0, 2.0], [0.0, 1.0, 0.0]), 'SimmSpline'),
+        (smooth_step(-0.2, 0.9, 1.5, -0.5).scaled(2.0), 'StepFunction'),
         (simm_spline([-1.0, 0.0, 0.4, 2.0, 3.0], [0.2, 1.0, 0.0, 0.5, 4.0]).scaled(1.3),
          'SimmSpline'),
     ],
@@ -148,7 +160,7 @@ def test_functions_come_back(write_model, tmp_path, function, tag):
 def test_a_function_of_unknown_pieces_is_refused():
     broken = simm_spline([0.0, 1.0, 2.0, 3.0], [0.0, 1.0, 0.0, 2.0])
     bent = replace(broken, coefficients=broken.coefficients + np.eye(5, 4))
-    with pytest.raises(ModelWriteError, match='5 pieces is no broken line and no SimmSpline'):
+    with pytest.raises(ModelWriteError, match='5 pieces is no broken line, step or SimmSpline'):
         function_element(bent)
 
 

@@ -11,18 +11,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from muscle_analyzer.core.exceptions import ModelWriteError
-from muscle_analyzer.core.functions import PiecewisePolynomial, piecewise_linear, simm_spline
+from muscle_analyzer.core.functions import (
+    PiecewisePolynomial,
+    piecewise_linear,
+    simm_spline,
+    smooth_step,
+)
 from muscle_analyzer.core.opensim.xml_tree import add_numbers
 
 Array = NDArray[np.float64]
 
-_LINE = 2
+#: Coefficients of a piece.
+_LINE, _QUINTIC = 2, 6
 #: Relative difference of coefficients up to which a spline through the same points is the same.
 _SAME = 1e-9
 
 
 def function_element(function: PiecewisePolynomial, name: str = '') -> Element:
-    """Return a function as an element: constant, line, polynomial, broken line or SimmSpline.
+    """Return a function as an element: constant, line, polynomial, broken line, step, spline.
 
     Raises
     ------
@@ -43,6 +49,14 @@ def function_element(function: PiecewisePolynomial, name: str = '') -> Element:
         last = function.anchors[-1] + 1.0
         knots = np.append(function.anchors, last)
         _add_points(element, function, piecewise_linear(knots, _values(function, knots)), knots)
+    elif function.coefficients.shape[1] == _QUINTIC:
+        element.tag = 'StepFunction'
+        start, end = (float(place) for place in function.switches)
+        low, high = (function.derivatives(place)[0] for place in (start, end))
+        _check_same(function, smooth_step(start, end, low, high))
+        for name_of, place, value in (('start', start, low), ('end', end, high)):
+            add_numbers(element, f'transition_{name_of}_time', place)
+            add_numbers(element, f'{name_of}_value', value)
     else:
         element.tag = 'SimmSpline'
         knots = function.switches
@@ -60,6 +74,13 @@ def _add_points(
     element: Element, function: PiecewisePolynomial, again: PiecewisePolynomial, knots: Array
 ) -> None:
     """Append the points, if a function made of them is the same function."""
+    _check_same(function, again)
+    add_numbers(element, 'x', knots)
+    add_numbers(element, 'y', _values(function, knots))
+
+
+def _check_same(function: PiecewisePolynomial, again: PiecewisePolynomial) -> None:
+    """Raise ModelWriteError if a function cannot be written as another one."""
     scale = max(float(np.abs(function.coefficients).max()), 1e-300)
     if (
         again.coefficients.shape != function.coefficients.shape
@@ -67,10 +88,8 @@ def _add_points(
         or np.abs(again.coefficients - function.coefficients).max() > _SAME * scale
     ):
         raise ModelWriteError(
-            f'a function of {function.anchors.size} pieces is no broken line and no SimmSpline'
+            f'a function of {function.anchors.size} pieces is no broken line, step or SimmSpline'
         )
-    add_numbers(element, 'x', knots)
-    add_numbers(element, 'y', _values(function, knots))
 
 
 def xyz_angles(rotation: Array) -> Array:
