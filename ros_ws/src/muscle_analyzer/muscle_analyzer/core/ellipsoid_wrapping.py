@@ -56,13 +56,16 @@ def _cross(a: Array, b: Array) -> Array:
 
 
 @njit(cache=True, error_model='numpy')
-def closest_on_ellipsoid(axes: Array, point: Array, held: Index, closest: Array) -> None:
+def closest_on_ellipsoid(
+    axes: Array, point: Array, held: Index, closest: Array, guess: float = -np.inf
+) -> float:
     """
     Find the point of an ellipsoid closest to a point off its centre.
 
     With x_i = a_i^2 u_i / (t + a_i^2) the largest root t of sum (x_i / a_i)^2 = 1 is sought by
-    Newton's method from the left, where the function is convex and falling (Eberly, Distance from
-    a point to an ellipse, an ellipsoid, or a hyperellipsoid).
+    Newton's method, from the left, where the function is convex and falling, or from a guess, a
+    step from whose right leads to the left (Eberly, Distance from a point to an ellipse, an
+    ellipsoid, or a hyperellipsoid).  Returns t.
 
     Parameters
     ----------
@@ -73,12 +76,14 @@ def closest_on_ellipsoid(axes: Array, point: Array, held: Index, closest: Array)
         other two), or -1.
     closest
         Filled with the result (3,).
+    guess
+        Of t, from a point nearby.
     """
     start = -np.inf
     for i in range(3):
         if i != held:
             start = max(start, axes[i] * abs(point[i]) - axes[i] * axes[i])
-    t = start
+    t = max(start, guess)
     for _ in range(64):
         value, slope = -1.0, 0.0
         for i in range(3):
@@ -91,12 +96,13 @@ def closest_on_ellipsoid(axes: Array, point: Array, held: Index, closest: Array)
                 slope -= 2.0 * ratio * ratio / over
         if abs(value) < 1e-14 or slope == 0.0:
             break
-        t -= value / slope
+        t = max(start, t - value / slope)
     for i in range(3):
         closest[i] = point[i]
         if i != held:
             over = t + axes[i] * axes[i]
             closest[i] = 0.0 if over <= 0.0 else axes[i] * axes[i] * point[i] / over
+    return t
 
 
 @njit(cache=True, error_model='numpy')
@@ -117,13 +123,14 @@ def _mean_direction(axes: Array, enter: Array, leave: Array, held: Index, mean: 
     cuts[n] = 1.0
     for i in range(3):
         mean[i] = 0.0
+    t = -np.inf
     for part in range(n):
         width = cuts[part + 1] - cuts[part]
         for k in range(_FAN_NODES.size):
             share = cuts[part] + width * _FAN_NODES[k]
             for i in range(3):
                 sample[i] = enter[i] + share * (leave[i] - enter[i])
-            closest_on_ellipsoid(axes, sample, held, surface)
+            t = closest_on_ellipsoid(axes, sample, held, surface, t)
             square = 0.0
             for i in range(3):
                 square += (surface[i] - sample[i]) ** 2

@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from muscle_analyzer.core.kinematics import BodyState, cross, point_acceleration, turned
+from muscle_analyzer.core.kinematics import BodyState, cross, cross3
 from muscle_analyzer.core.multibody import Tree
 
 Array = NDArray[np.float64]
@@ -58,38 +58,59 @@ def add_force(wrenches: Array, body: int, force: Array, point: Array, moment: Ar
     wrenches[body, 5] += fz
 
 
+@njit(cache=True, inline='always')
+def _times(m, x, y, z):  # type: ignore[no-untyped-def]
+    """Give a matrix (3, 3) times a vector, in scalars."""
+    return (
+        m[0, 0] * x + m[0, 1] * y + m[0, 2] * z,
+        m[1, 0] * x + m[1, 1] * y + m[1, 2] * z,
+        m[2, 0] * x + m[2, 1] * y + m[2, 2] * z,
+    )
+
+
+@njit(cache=True, inline='always')
+def _into_body(m, x, y, z):  # type: ignore[no-untyped-def]
+    """Give a transposed matrix (3, 3) times a vector, in scalars."""
+    return (
+        m[0, 0] * x + m[1, 0] * y + m[2, 0] * z,
+        m[0, 1] * x + m[1, 1] * y + m[2, 1] * z,
+        m[0, 2] * x + m[1, 2] * y + m[2, 2] * z,
+    )
+
+
 @njit(cache=True)
 def inertial_wrenches(tree: Tree, state: BodyState) -> Array:
     """Return the wrenches (n_b, 6) that give every body its acceleration, weight taken off."""
     n_b = tree.parent.size
     out = np.zeros((n_b, 6))
-    arm = np.zeros(3)
-    half = np.zeros((3, 3))
-    inertia = np.zeros((3, 3))
+    # Scalars throughout: a small array per body and vector costs more than the arithmetic.
     for b in range(1, n_b):
         rot = state.rotation[b]
-        w = state.angular_velocity[b]
-        al = state.angular_acceleration[b]
-        for i in range(3):
-            arm[i] = 0.0
-            for j in range(3):
-                arm[i] += rot[i, j] * tree.mass_center[b, j]
-                half[i, j] = 0.0
-                for k in range(3):
-                    half[i, j] += rot[i, k] * tree.inertia[b, k, j]
-        for i in range(3):
-            for j in range(3):
-                inertia[i, j] = 0.0
-                for k in range(3):
-                    inertia[i, j] += half[i, k] * rot[j, k]
-        force = point_acceleration(state, b, tree.mass_center[b])
-        moment = cross(w, turned(inertia, w))
-        rate = turned(inertia, al)
-        for i in range(3):
-            force[i] = tree.mass[b] * (force[i] - tree.gravity[i])
-            moment[i] += rate[i]
-            arm[i] += state.position[b, i]
-        add_force(out, b, force, arm, moment)
+        c, tensor, mass = tree.mass_center[b], tree.inertia[b], tree.mass[b]
+        wx, wy, wz = state.angular_velocity[b]
+        lx, ly, lz = state.angular_acceleration[b]
+        rx = rot[0, 0] * c[0] + rot[0, 1] * c[1] + rot[0, 2] * c[2]
+        ry = rot[1, 0] * c[0] + rot[1, 1] * c[1] + rot[1, 2] * c[2]
+        rz = rot[2, 0] * c[0] + rot[2, 1] * c[1] + rot[2, 2] * c[2]
+        sx, sy, sz = cross3(wx, wy, wz, rx, ry, rz)
+        sx, sy, sz = cross3(wx, wy, wz, sx, sy, sz)
+        tx, ty, tz = cross3(lx, ly, lz, rx, ry, rz)
+        fx = mass * (state.acceleration[b, 0] + sx + tx - tree.gravity[0])
+        fy = mass * (state.acceleration[b, 1] + sy + ty - tree.gravity[1])
+        fz = mass * (state.acceleration[b, 2] + sz + tz - tree.gravity[2])
+        # Angular momentum and its rate in body axes, where the inertia is constant.
+        ux, uy, uz = _into_body(rot, wx, wy, wz)
+        vx, vy, vz = _into_body(rot, lx, ly, lz)
+        hx, hy, hz = _times(tensor, ux, uy, uz)
+        mx, my, mz = cross3(ux, uy, uz, hx, hy, hz)
+        hx, hy, hz = _times(tensor, vx, vy, vz)
+        mx, my, mz = _times(rot, mx + hx, my + hy, mz + hz)
+        px, py, pz = cross3(
+            state.position[b, 0] + rx, state.position[b, 1] + ry, state.position[b, 2] + rz,
+            fx, fy, fz,
+        )  # fmt: skip
+        out[b, 0], out[b, 1], out[b, 2] = mx + px, my + py, mz + pz
+        out[b, 3], out[b, 4], out[b, 5] = fx, fy, fz
     return out
 
 

@@ -102,7 +102,8 @@ def coordinate_state(tree: Tree, q: Array, qd: Array, qdd: Array) -> CoordinateS
 
 
 @njit(cache=True, inline='always')
-def _cross(ax, ay, az, bx, by, bz):  # type: ignore[no-untyped-def]
+def cross3(ax, ay, az, bx, by, bz):  # type: ignore[no-untyped-def]
+    """Return the cross product of two vectors, in scalars."""
     return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
 
 
@@ -110,7 +111,7 @@ def _cross(ax, ay, az, bx, by, bz):  # type: ignore[no-untyped-def]
 def cross(a: Array, b: Array) -> Array:
     """Return the cross product (3,); compiles and runs faster than NumPy's general one."""
     out = np.empty(3)
-    out[0], out[1], out[2] = _cross(a[0], a[1], a[2], b[0], b[1], b[2])
+    out[0], out[1], out[2] = cross3(a[0], a[1], a[2], b[0], b[1], b[2])
     return out
 
 
@@ -209,9 +210,9 @@ def forward_kinematics(tree: Tree, q: Array, qd: Array, qdd: Array) -> BodyState
                     r2[i] += s * move[e, 2]
         wx, wy, wz = w[m, 0], w[m, 1], w[m, 2]
         lx, ly, lz = al[m, 0], al[m, 1], al[m, 2]
-        cx, cy, cz = _cross(wx, wy, wz, r[0], r[1], r[2])
-        dx, dy, dz = _cross(wx, wy, wz, cx + 2.0 * r1[0], cy + 2.0 * r1[1], cz + 2.0 * r1[2])
-        ex, ey, ez = _cross(lx, ly, lz, r[0], r[1], r[2])
+        cx, cy, cz = cross3(wx, wy, wz, r[0], r[1], r[2])
+        dx, dy, dz = cross3(wx, wy, wz, cx + 2.0 * r1[0], cy + 2.0 * r1[1], cz + 2.0 * r1[2])
+        ex, ey, ez = cross3(lx, ly, lz, r[0], r[1], r[2])
         vx, vy, vz = v[m, 0] + cx + r1[0], v[m, 1] + cy + r1[1], v[m, 2] + cz + r1[2]
         ax = a[m, 0] + ex + dx + r2[0]
         ay = a[m, 1] + ey + dy + r2[1]
@@ -224,11 +225,11 @@ def forward_kinematics(tree: Tree, q: Array, qd: Array, qdd: Array) -> BodyState
                 sx = frame[0, 0] * u[0] + frame[0, 1] * u[1] + frame[0, 2] * u[2]
                 sy = frame[1, 0] * u[0] + frame[1, 1] * u[1] + frame[1, 2] * u[2]
                 sz = frame[2, 0] * u[0] + frame[2, 1] * u[1] + frame[2, 2] * u[2]
-                mx, my, mz = _cross(pivot[b, 0], pivot[b, 1], pivot[b, 2], sx, sy, sz)
+                mx, my, mz = cross3(pivot[b, 0], pivot[b, 1], pivot[b, 2], sx, sy, sz)
                 screw[e, 0], screw[e, 1], screw[e, 2] = sx, sy, sz
                 screw[e, 3], screw[e, 4], screw[e, 5] = mx, my, mz
                 rate = move[e, 1]
-                cx, cy, cz = _cross(wx, wy, wz, sx, sy, sz)
+                cx, cy, cz = cross3(wx, wy, wz, sx, sy, sz)
                 lx += sx * move[e, 2] + cx * rate
                 ly += sy * move[e, 2] + cy * rate
                 lz += sz * move[e, 2] + cz * rate
@@ -241,9 +242,9 @@ def forward_kinematics(tree: Tree, q: Array, qd: Array, qdd: Array) -> BodyState
         for i in range(3):
             r[i] = -(rot[b, i, 0] * t[0] + rot[b, i, 1] * t[1] + rot[b, i, 2] * t[2])
             p[b, i] = pivot[b, i] + r[i]
-        cx, cy, cz = _cross(wx, wy, wz, r[0], r[1], r[2])
-        dx, dy, dz = _cross(wx, wy, wz, cx, cy, cz)
-        ex, ey, ez = _cross(lx, ly, lz, r[0], r[1], r[2])
+        cx, cy, cz = cross3(wx, wy, wz, r[0], r[1], r[2])
+        dx, dy, dz = cross3(wx, wy, wz, cx, cy, cz)
+        ex, ey, ez = cross3(lx, ly, lz, r[0], r[1], r[2])
         w[b, 0], w[b, 1], w[b, 2] = wx, wy, wz
         al[b, 0], al[b, 1], al[b, 2] = lx, ly, lz
         v[b, 0], v[b, 1], v[b, 2] = vx + cx, vy + cy, vz + cz

@@ -22,7 +22,13 @@ from numpy.typing import NDArray
 from muscle_analyzer.core.functions import evaluate
 from muscle_analyzer.core.kinematics import BodyState
 from muscle_analyzer.core.muscle_path_table import PathTable
-from muscle_analyzer.core.path_wrapping import distance, out_of, path_length, wrap_path
+from muscle_analyzer.core.path_wrapping import (
+    gap,
+    new_scratch,
+    out_of,
+    path_length,
+    wrap_path,
+)
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -62,7 +68,7 @@ def _active_points(
 ) -> int:
     """Put the points of a path that are there where they are; returns their number."""
     begin = table.point_start[muscle]
-    moved = np.empty(3)
+    moved = np.empty((1, 3))
     n = 0
     for p in range(begin, table.point_start[muscle + 1]):
         body = table.point_body[p]
@@ -75,12 +81,10 @@ def _active_points(
             d = table.point_motion[p]
             for i in range(3):
                 value = coordinate[table.motion_coordinate[d, i]]
-                moved[i] = evaluate(table.functions, table.motion_function[d, i], value)[0]
-            out_of(body_rotation[body], body_position[body], moved, point[n])
+                moved[0, i] = evaluate(table.functions, table.motion_function[d, i], value)[0]
+            out_of(body_rotation, body_position, body, moved, 0, point, n)
         else:
-            out_of(
-                body_rotation[body], body_position[body], table.point_location[p], point[n]
-            )
+            out_of(body_rotation, body_position, body, table.point_location, p, point, n)
         owner[n] = p - begin
         n += 1
     return n
@@ -134,6 +138,7 @@ def _paths(
     moment_arm = np.zeros((n_m, jacobian.shape[2]))
     wrench = np.zeros((table.body_index.size, 6))
     pull = np.empty(3)
+    scratch = new_scratch(table.wraps.kind.size)
     special = table.condition_coordinate.size + table.motion_coordinate.size > 0
     for m in range(n_m):
         n = table.point_start[m + 1] - table.point_start[m]
@@ -143,13 +148,11 @@ def _paths(
             for k in range(n):
                 p = table.point_start[m] + k
                 body = table.point_body[p]
-                out_of(
-                    body_rotation[body], body_position[body], table.point_location[p], point[k]
-                )
+                out_of(body_rotation, body_position, body, table.point_location, p, point, k)
                 owner[k] = k
         if table.wraps.start[m + 1] > table.wraps.start[m]:
             n, length[m] = wrap_path(
-                table.wraps, m, body_rotation, body_position, point, owner, arc, n
+                table.wraps, m, body_rotation, body_position, point, owner, arc, n, scratch
             )
         else:
             length[m] = path_length(point, owner, arc, n)
@@ -162,7 +165,7 @@ def _paths(
             body_2 = _body(table.point_body, table.wraps.body, first, owner[k + 1])
             if body_1 == body_2:
                 continue
-            span = distance(point[k], point[k + 1])
+            span = gap(point, k, k + 1)
             if span == 0.0:
                 continue
             ux = (point[k + 1, 0] - point[k, 0]) / span
@@ -196,7 +199,7 @@ def _paths(
                     pull[i] = 0.0
                 for other in (k - 1, k + 1):
                     if 0 <= other < n:
-                        span = distance(point[k], point[other])
+                        span = gap(point, k, other)
                         if span > 0.0:
                             for i in range(3):
                                 pull[i] += (point[other, i] - point[k, i]) / span

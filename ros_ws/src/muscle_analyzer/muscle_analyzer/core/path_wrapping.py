@@ -10,6 +10,7 @@ as in OpenSim's ``GeometryPath``; the single surfaces are in modules of their ow
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -22,10 +23,41 @@ from muscle_analyzer.core.torus_wrapping import wrap_torus
 from muscle_analyzer.core.wrapping import INSIDE, MISSED, PIERCED, POSSIBLE, wrap_cylinder
 
 Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
 
 #: Rounds over the wrap objects of one path until its length settles, as in OpenSim, but to a
 #: tighter tolerance [m] so that the result does not depend on it.
 WRAP_ROUNDS, WRAP_TOLERANCE = 8, 1e-9
+
+
+class Scratch(NamedTuple):
+    """Working space of `wrap_path`, made once for all muscles: allocating costs time."""
+
+    order: IntArray
+    contacts: IntArray
+    first: Array
+    second: Array
+    tangent_first: Array
+    tangent_second: Array
+    best: Array
+    rotation: Array
+    origin: Array
+
+
+@njit(cache=True, error_model='numpy')
+def new_scratch(most_wraps: int) -> Scratch:
+    """Make the working space for paths with so many wrap objects at most."""
+    return Scratch(
+        np.empty(most_wraps, np.int64),
+        np.empty(most_wraps, np.int64),
+        np.empty(3),
+        np.empty(3),
+        np.empty(3),
+        np.empty(3),
+        np.empty((2, 3)),
+        np.empty((3, 3)),
+        np.empty(3),
+    )
 
 
 @njit(cache=True, error_model='numpy')
@@ -34,22 +66,39 @@ def distance(a: Array, b: Array) -> float:
     return math.sqrt((b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2 + (b[2] - a[2]) ** 2)
 
 
-@njit(cache=True, error_model='numpy')
-def into(rotation: Array, origin: Array, point: Array, out: Array) -> None:
-    """Express a ground point in a frame."""
+@njit(cache=True, error_model='numpy', inline='always')
+def into(rotation: Array, origin: Array, point: Array, k: int, out: Array) -> None:
+    """
+    Express ground point k of (n, 3) in a frame.
+
+    Rows are given by array and number, here and below: numba counts references of every row that
+    is cut out as an array of its own, which costs more than the arithmetic.
+    """
+    x, y, z = point[k, 0] - origin[0], point[k, 1] - origin[1], point[k, 2] - origin[2]
     for i in range(3):
-        out[i] = 0.0
-        for j in range(3):
-            out[i] += rotation[j, i] * (point[j] - origin[j])
+        out[i] = rotation[0, i] * x + rotation[1, i] * y + rotation[2, i] * z
 
 
-@njit(cache=True, error_model='numpy')
-def out_of(rotation: Array, origin: Array, point: Array, out: Array) -> None:
-    """Express a point of a frame in ground axes."""
+@njit(cache=True, error_model='numpy', inline='always')
+def out_of(
+    rotation: Array, origin: Array, body: int, local: Array, p: int, out: Array, k: int
+) -> None:
+    """Put point p of (n, 3), in the axes of one of many bodies, into row k in ground axes."""
+    x, y, z = local[p, 0], local[p, 1], local[p, 2]
     for i in range(3):
-        out[i] = origin[i]
-        for j in range(3):
-            out[i] += rotation[i, j] * point[j]
+        out[k, i] = origin[body, i] + (
+            rotation[body, i, 0] * x + rotation[body, i, 1] * y + rotation[body, i, 2] * z
+        )
+
+
+@njit(cache=True, error_model='numpy', inline='always')
+def gap(point: Array, k: int, other: int) -> float:
+    """Give the distance of two rows of (n, 3)."""
+    return math.sqrt(
+        (point[other, 0] - point[k, 0]) ** 2
+        + (point[other, 1] - point[k, 1]) ** 2
+        + (point[other, 2] - point[k, 2]) ** 2
+    )
 
 
 @njit(cache=True, error_model='numpy')
@@ -60,7 +109,7 @@ def path_length(point: Array, owner: NDArray[np.int64], arc: Array, n: int) -> f
         if owner[k] < 0 and owner[k] == owner[k + 1]:
             length += arc[k]
         else:
-            length += distance(point[k], point[k + 1])
+            length += gap(point, k, k + 1)
     return length
 
 
@@ -74,7 +123,7 @@ def _best_wrap(
     owner: NDArray[np.int64],
     n: int,
     geodesic: bool,
-    best: Array,
+    scratch: Scratch,
 ) -> tuple[int, int, float]:
     """
     Find the segment of a path that wraps over an object, and its tangent points.
@@ -82,7 +131,8 @@ def _best_wrap(
     The first segment that pierces the object is taken; otherwise the one whose wrap lengthens
     the path least.  Returns the segment (-1 if none), the last contact and the arc length.
     """
-    ends = np.empty((4, 3))
+    a, b = scratch.first, scratch.second
+    leave, meet = scratch.tangent_first, scratch.tangent_second
     found, contact, arc, least = -1, MISSED, 0.0, np.inf
     # Of the points that are there, the first and the last that the object counts for.
     start, end = n, -1
@@ -92,36 +142,38 @@ def _best_wrap(
     for k in range(start, end):
         if owner[k] < 0 and owner[k] == owner[k + 1]:
             continue
-        into(rotation, origin, point[k], ends[0])
-        into(rotation, origin, point[k + 1], ends[1])
+        into(rotation, origin, point, k, a)
+        into(rotation, origin, point, k + 1, b)
         dimensions, axis = wraps.dimensions[use], wraps.axis[use]
         sign = wraps.sign[use]
         kind = wraps.kind[use]
         if kind == CYLINDER:
             contact, along = wrap_cylinder(
-                ends[0], ends[1], dimensions, axis, sign, geodesic, ends[2], ends[3]
+                a, b, dimensions, axis, sign, geodesic, leave, meet
             )
         elif kind == ELLIPSOID:
             method = wraps.method[use]
             contact, along = wrap_ellipsoid(
-                ends[0], ends[1], dimensions, axis, sign, method, ends[2], ends[3]
+                a, b, dimensions, axis, sign, method, leave, meet
             )
         elif kind == SPHERE:
             contact, along = wrap_sphere(
-                ends[0], ends[1], dimensions, axis, sign, ends[2], ends[3]
+                a, b, dimensions, axis, sign, leave, meet
             )
         else:
             contact, along = wrap_torus(
-                ends[0], ends[1], dimensions, axis, sign, geodesic, ends[2], ends[3]
+                a, b, dimensions, axis, sign, geodesic, leave, meet
             )
         if contact < POSSIBLE:
             continue
-        longer = distance(ends[0], ends[2]) + along + distance(ends[3], ends[1])
-        longer -= distance(ends[0], ends[1])
+        longer = distance(a, leave) + along + distance(meet, b) - distance(a, b)
         if contact == PIERCED or longer < least:
             found, arc, least = k, along, longer
-            out_of(rotation, origin, ends[2], best[0])
-            out_of(rotation, origin, ends[3], best[1])
+            for i in range(3):
+                scratch.best[0, i] = scratch.best[1, i] = origin[i]
+                for j in range(3):
+                    scratch.best[0, i] += rotation[i, j] * leave[j]
+                    scratch.best[1, i] += rotation[i, j] * meet[j]
         if contact == PIERCED:
             break
     return found, contact, arc
@@ -145,6 +197,7 @@ def wrap_path(
     owner: NDArray[np.int64],
     arc: Array,
     n: int,
+    scratch: Scratch,
 ) -> tuple[int, float]:
     """
     Insert the wrap points of one muscle into its path.
@@ -154,10 +207,11 @@ def wrap_path(
     """
     begin, end = wraps.start[muscle], wraps.start[muscle + 1]
     n_wraps = end - begin
-    order = np.arange(begin, end)
-    contacts = np.zeros(n_wraps, np.int64)
-    best = np.empty((2, 3))
-    rotation, origin = np.empty((3, 3)), np.empty(3)
+    order, contacts, best = scratch.order, scratch.contacts, scratch.best
+    rotation, origin = scratch.rotation, scratch.origin
+    for place in range(n_wraps):
+        order[place] = begin + place
+        contacts[place] = MISSED
     length = np.inf
     geodesic = wraps.geodesic[0] or n_wraps > 1
     for attempt in range(WRAP_ROUNDS if n_wraps > 1 else 1):
@@ -177,11 +231,11 @@ def wrap_path(
                         rotation[i, j] += (
                             body_rotation[body, i, k] * wraps.rotation[use, k, j]
                         )
-            out_of(
-                body_rotation[body], body_position[body], wraps.translation[use], origin
-            )
+                origin[i] = body_position[body, i]
+                for k in range(3):
+                    origin[i] += body_rotation[body, i, k] * wraps.translation[use, k]
             segment, contact, along = _best_wrap(
-                wraps, use, rotation, origin, point, owner, n, geodesic, best
+                wraps, use, rotation, origin, point, owner, n, geodesic, scratch
             )
             contacts[place] = contact
             if segment >= 0:

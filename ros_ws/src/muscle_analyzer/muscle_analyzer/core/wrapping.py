@@ -46,13 +46,13 @@ def _apex_heights(
     the side of the axis away from the segment.  A height outside those of the ends is replaced by
     that of its end.
     """
-    share = math.hypot(first[0], first[1])
-    share /= share + math.hypot(second[0], second[1])
+    share = math.sqrt(first[0] ** 2 + first[1] ** 2)
+    share /= share + math.sqrt(second[0] ** 2 + second[1] ** 2)
     height = first[2] + share * (second[2] - first[2])
     # Direction normal to the axis in the plane of both ends and the point of the axis there.
     ax = first[0] * (second[2] - height) - (first[2] - height) * second[0]
     ay = first[1] * (second[2] - height) - (first[2] - height) * second[1]
-    size = math.hypot(ax, ay)
+    size = math.sqrt(ax * ax + ay * ay)
     if size == 0.0:
         return first[2], second[2]
     mid_x = first[0] + share * (second[0] - first[0])
@@ -75,9 +75,24 @@ def _apex_heights(
 
 
 @njit(cache=True, error_model='numpy')
+def _tangents(x: float, y: float, radius: float) -> tuple[float, float, float, float]:
+    """
+    Give the tangent points of a circle about the origin seen from a point outside it.
+
+    The first two numbers are x and y of the point counter-clockwise of it (left of it, seen from
+    the centre), then come those of the other.
+    """
+    square = x * x + y * y
+    along = radius * radius / square
+    across = radius * math.sqrt(max(0.0, square - radius * radius)) / square
+    px, py, qx, qy = along * x, along * y, across * y, across * x
+    return px - qx, py + qy, px + qx, py - qy
+
+
+@njit(cache=True, error_model='numpy')
 def _cylinder_sense(
-    angles: tuple[float, float, float, float],
-    radius: float,
+    one: tuple[float, float, float, float],
+    two: tuple[float, float, float, float],
     axis: int,
     sign: int,
     heights: tuple[float, float],
@@ -85,16 +100,13 @@ def _cylinder_sense(
     """
     Choose the way round that uses the active half of a cylinder.
 
-    `angles` are those of the tangent points: of the first end counter-clockwise and clockwise of
-    it, then of the second end.  The path runs counter-clockwise from the first to the fourth, or
-    clockwise from the second to the third.  Of a half along the axis only the `heights` of the
-    ends tell whether tangent points are on it.
+    `one` and `two` are the `_tangents` of both ends.  The path runs counter-clockwise from the
+    left one of the first end to the right one of the second, or clockwise from right to left.  Of
+    a half along the axis only the `heights` of the ends tell whether tangent points are on it.
     """
-    turn = 0.5 * math.pi if axis == 1 else 0.0
-    first_left = radius * math.cos(angles[0] - turn) * sign > 0.0
-    first_right = radius * math.cos(angles[1] - turn) * sign > 0.0
-    second_left = radius * math.cos(angles[2] - turn) * sign > 0.0
-    second_right = radius * math.cos(angles[3] - turn) * sign > 0.0
+    k = 1 if axis == 1 else 0
+    first_left, first_right = one[k] * sign > 0.0, one[k + 2] * sign > 0.0
+    second_left, second_right = two[k] * sign > 0.0, two[k + 2] * sign > 0.0
     if axis == 2:
         first_left = first_right = heights[0] * sign > 0.0
         second_left = second_right = heights[1] * sign > 0.0
@@ -107,8 +119,8 @@ def _cylinder_sense(
     if second_right:
         return 1
     # No tangent point is on the active half: the longer way round passes over it.
-    left = math.cos(angles[3] - angles[0])
-    right = math.cos(angles[2] - angles[1])
+    left = one[0] * two[2] + one[1] * two[3]
+    right = one[2] * two[0] + one[3] * two[1]
     return 1 if left < right else -1
 
 
@@ -148,8 +160,8 @@ def wrap_cylinder(
     """
     radius = dimensions[0]
     x1, y1, x2, y2 = first[0], first[1], second[0], second[1]
-    from_axis_1, from_axis_2 = math.hypot(x1, y1), math.hypot(x2, y2)
-    if from_axis_1 < radius or from_axis_2 < radius:
+    square_1, square_2 = x1 * x1 + y1 * y1, x2 * x2 + y2 * y2
+    if square_1 < radius * radius or square_2 < radius * radius:
         return INSIDE, 0.0
     dx, dy = x2 - x1, y2 - y1
     square = dx * dx + dy * dy
@@ -158,7 +170,8 @@ def wrap_cylinder(
 
     # Point of the segment's line closest to the axis.
     share = -(x1 * dx + y1 * dy) / square
-    pierced = 0.0 < share < 1.0 and math.hypot(x1 + share * dx, y1 + share * dy) < radius
+    nearest_x, nearest_y = x1 + share * dx, y1 + share * dy
+    pierced = 0.0 < share < 1.0 and nearest_x**2 + nearest_y**2 < radius * radius
     if sign == 0 and not pierced:
         return MISSED, 0.0
     contact = PIERCED if pierced else POSSIBLE
@@ -172,39 +185,28 @@ def wrap_cylinder(
         else:
             contact = POSSIBLE
 
-    angle_1, angle_2 = math.atan2(y1, x1), math.atan2(y2, x2)
-    to_tangent_1 = math.acos(min(1.0, radius / from_axis_1))
-    to_tangent_2 = math.acos(min(1.0, radius / from_axis_2))
+    one, two = _tangents(x1, y1, radius), _tangents(x2, y2, radius)
     if sign == 0:
         sense = 1 if x1 * y2 - y1 * x2 > 0.0 else -1
     else:
-        sense = _cylinder_sense(
-            (
-                angle_1 + to_tangent_1,
-                angle_1 - to_tangent_1,
-                angle_2 + to_tangent_2,
-                angle_2 - to_tangent_2,
-            ),
-            radius,
-            axis,
-            sign,
-            (first[2], second[2]),
-        )
-    difference = angle_2 - angle_1
-    between = to_tangent_1 + to_tangent_2
+        sense = _cylinder_sense(one, two, axis, sign, (first[2], second[2]))
+    left = one[0] * two[2] + one[1] * two[3]
+    right = one[2] * two[0] + one[3] * two[1]
     # Whether the way round taken is not the one with the smaller angle.
-    far = (sense == 1) == (math.cos(difference - between) < math.cos(difference + between))
-    angle_1 += sense * to_tangent_1
-    angle_2 -= sense * to_tangent_2
-    turned = (sense * (angle_2 - angle_1)) % (2.0 * math.pi)
-
-    around = radius * turned
-    tangent_first[0], tangent_first[1] = radius * math.cos(angle_1), radius * math.sin(angle_1)
-    tangent_second[0], tangent_second[1] = radius * math.cos(angle_2), radius * math.sin(angle_2)
+    far = (sense == 1) == (left < right)
+    if sense == 1:
+        tangent_first[0], tangent_first[1] = one[0], one[1]
+        tangent_second[0], tangent_second[1] = two[2], two[3]
+    else:
+        tangent_first[0], tangent_first[1] = one[2], one[3]
+        tangent_second[0], tangent_second[1] = two[0], two[1]
+    across = tangent_first[0] * tangent_second[1] - tangent_first[1] * tangent_second[0]
+    turned = math.atan2(sense * across, left if sense == 1 else right)
+    around = radius * (turned if turned >= 0.0 else turned + 2.0 * math.pi)
     if geodesic:
         # Straight in the unrolled surface: height grows evenly with the way seen along the axis.
-        free_1 = math.sqrt(from_axis_1 * from_axis_1 - radius * radius)
-        free_2 = math.sqrt(from_axis_2 * from_axis_2 - radius * radius)
+        free_1 = math.sqrt(square_1 - radius * radius)
+        free_2 = math.sqrt(square_2 - radius * radius)
         slope = (second[2] - first[2]) / (free_1 + around + free_2)
         tangent_first[2] = first[2] + slope * free_1
         tangent_second[2] = second[2] - slope * free_2
@@ -215,4 +217,4 @@ def wrap_cylinder(
     half = 0.5 * dimensions[1]
     if abs(tangent_first[2]) > half and abs(tangent_second[2]) > half:
         return MISSED, 0.0
-    return contact, math.hypot(around, tangent_second[2] - tangent_first[2])
+    return contact, math.sqrt(around**2 + (tangent_second[2] - tangent_first[2]) ** 2)
