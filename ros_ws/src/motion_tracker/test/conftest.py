@@ -19,6 +19,9 @@ from motion_tracker.core.marker_set import load_marker_set
 ROOT = Path(__file__).resolve().parents[4]
 SQUATS = ROOT.parent / 'shared' / 'data' / 'squats_bodyweight'
 
+# Stamp [s] at which the made-up lift begins, mass [kg] of its box.
+LIFT_START, LIFT_MASS, GRAVITY = 1.7e9, 10.0, 9.80665
+
 Squats = namedtuple('Squats', 'subject marker_set calibrated names time markers wrenches')
 
 
@@ -55,6 +58,36 @@ def crouch(skeleton):
                    f'elbow_flex_{side}': 0.4, f'pro_sup_{side}': 0.2,
                    f'hip_adduction_{side}': -0.1, f'mtp_angle_{side}': 0.05}
     return skeleton.vector(values)
+
+
+def step(time, begin, duration):
+    """Return a smooth step from 0 to 1."""
+    s = np.clip((time - begin) / duration, 0.0, 1.0)
+    return 10 * s**3 - 15 * s**4 + 6 * s**5
+
+
+@pytest.fixture(scope='session')
+def lift(skeleton, solver, crouch, person):
+    """Frames of a crouching person who rises with a box between the hands, as (kind, ...)."""
+    rng = np.random.default_rng(6)
+    stand = skeleton.vector({'arm_flex_r': 0.5, 'arm_flex_l': 0.5, 'elbow_flex_r': 0.5,
+                             'elbow_flex_l': 0.5}, skeleton.standing())
+    markers, box, wrench = [], [], []
+    for i in range(300):
+        t = i / 100.0
+        q = crouch + float(step(t, 1.0, 1.0)) * (stand - crouch)
+        points = skeleton.points(q)
+        centre = (points['hand_r'] + points['hand_l']) / 2
+        positions = solver.predict(q) + rng.normal(0.0, 5e-4, (54, 3))
+        markers.append(('markers', LIFT_START + t, positions))
+        box.append(('box', LIFT_START + t, centre + rng.normal(0.0, 3e-4, 3)))
+        weight = (person.mass + LIFT_MASS) * GRAVITY / 2
+        for k in range(2):
+            for side, y in (('right', -0.15), ('left', 0.15)):
+                force = np.array([0.0, 0.0, weight]) + rng.normal(0.0, 1.0, 3)
+                wrench.append((side, LIFT_START + t + k / 200.0, force,
+                               np.cross([0.1, y, 0.0], force)))
+    return markers, box, wrench
 
 
 def read_trc(path):

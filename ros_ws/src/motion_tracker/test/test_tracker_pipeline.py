@@ -20,38 +20,10 @@ from motion_tracker.core.tracked import (
 )
 from motion_tracker.core.tracker import MotionTracker
 
+# Of the lift in conftest.
 START = 1.7e9
 MASS, SIZE = 10.0, (0.3, 0.3, 0.2)
 GRAVITY = 9.80665
-
-
-def step(time, begin, duration):
-    s = np.clip((time - begin) / duration, 0.0, 1.0)
-    return 10 * s**3 - 15 * s**4 + 6 * s**5
-
-
-@pytest.fixture(scope='module')
-def lift(skeleton, solver, crouch, person):
-    """Frames of a crouching person who rises with a box between the hands, as (kind, ...)."""
-    rng = np.random.default_rng(6)
-    stand = skeleton.vector({'arm_flex_r': 0.5, 'arm_flex_l': 0.5, 'elbow_flex_r': 0.5,
-                             'elbow_flex_l': 0.5}, skeleton.standing())
-    markers, box, wrench = [], [], []
-    for i in range(300):
-        t = i / 100.0
-        q = crouch + float(step(t, 1.0, 1.0)) * (stand - crouch)
-        points = skeleton.points(q)
-        centre = (points['hand_r'] + points['hand_l']) / 2
-        positions = solver.predict(q) + rng.normal(0.0, 5e-4, (54, 3))
-        markers.append(('markers', START + t, positions))
-        box.append(('box', START + t, centre + rng.normal(0.0, 3e-4, 3)))
-        weight = (person.mass + MASS) * GRAVITY / 2
-        for k in range(2):
-            for side, y in (('right', -0.15), ('left', 0.15)):
-                force = np.array([0.0, 0.0, weight]) + rng.normal(0.0, 1.0, 3)
-                wrench.append((side, START + t + k / 200.0, force,
-                               np.cross([0.1, y, 0.0], force)))
-    return markers, box, wrench
 
 
 def feed_one(tracker, message, names):
