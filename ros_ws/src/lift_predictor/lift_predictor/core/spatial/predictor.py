@@ -39,11 +39,11 @@ from lift_predictor.core.spatial.programme import (
     spatial_library,
     spatial_programme,
 )
+from lift_predictor.core.spatial.recorded_task import recorded_task
 from lift_predictor.core.spatial.starts import SpatialStart, recorded_starts
 from lift_predictor.core.spatial.task import (
     SpatialTask,
     Windows,
-    recorded_task,
     without_ground_windows,
 )
 from lift_predictor.core.spatial.verify import SpatialVerification, verify
