@@ -133,10 +133,15 @@ def test_everything_from_the_bag_is_read_by_some_node() -> None:
 
 
 def served(package: str) -> dict[str, str]:
-    """Return type by name of the services and actions a node's source opens."""
-    source = (SOURCES / package / package / f'{package}_node.py').read_text(encoding='utf-8')
-    tree = ast.parse(source)
-    types = full_types(tree)
+    """Return type by name of the services and actions the modules beside a node's open."""
+    found: dict[str, str] = {}
+    for path in sorted((SOURCES / package / package).glob('*.py')):
+        tree = ast.parse(path.read_text(encoding='utf-8'))
+        found |= _served(package, tree, full_types(tree))
+    return found
+
+
+def _served(package: str, tree: ast.Module, types: dict[str, str]) -> dict[str, str]:
     found = {}
     for node in ast.walk(tree):
         if not isinstance(node, ast.Call):
