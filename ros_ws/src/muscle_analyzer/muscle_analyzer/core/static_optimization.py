@@ -265,7 +265,8 @@ class StaticOptimization:
         fixed = (matrix, self._unit, torque, self._lower, self._upper, self._weight)
         limit = self.options.max_iterations
         if self.criterion is Criterion.MIN_MAX:
-            return solve_min_max(*fixed, multiplier, tolerance, limit)
+            # The small curvature of its cost magnifies the rounding of the multipliers.
+            return solve_min_max(*fixed, multiplier, 8.0 * tolerance, limit)
         exponent = EXPONENTS[self.criterion]
         solution = solve_dual(*fixed, exponent, multiplier, tolerance, limit)
         return *solution, self.options.maximum_activation
