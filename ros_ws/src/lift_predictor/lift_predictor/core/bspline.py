@@ -136,6 +136,22 @@ def _basis(knots: Array, degree: int, s: Array, derivative: int) -> Array:
     return np.asarray(rising + falling)
 
 
+def require_nodes(n_control: int, n_nodes: int) -> None:
+    """Refuse numbers of control points and time nodes that do not fit.
+
+    Raises
+    ------
+    SplineError
+        `n_nodes` is not 2 (n_control - 3) k + 1.
+    """
+    spans = RestToRestSpline(n_control).n_spans
+    if n_nodes < 2 * spans + 1 or (n_nodes - 1) % (2 * spans):
+        raise SplineError(
+            f'n_nodes = {n_nodes}: with n_control = {n_control}, '
+            f'{2 * spans} k + 1 nodes are needed'
+        )
+
+
 def simpson_weights(n_nodes: int) -> Array:
     """Weights of the composite Simpson rule on [0, 1] (n_nodes odd), shape (n_nodes,).
 

@@ -11,8 +11,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from lift_predictor.core.bspline import RestToRestSpline
-from lift_predictor.core.exceptions import SplineError
+from lift_predictor.core.bspline import RestToRestSpline, require_nodes
 from lift_predictor.core.sagittal.parameters import (
     CIRCLE_BODIES,
     CIRCLES_PER_BODY,
@@ -86,12 +85,7 @@ class Grid:
     n_nodes: int
 
     def __post_init__(self) -> None:
-        spans = RestToRestSpline(self.n_control).n_spans
-        if self.n_nodes < 2 * spans + 1 or (self.n_nodes - 1) % (2 * spans):
-            raise SplineError(
-                f'n_nodes = {self.n_nodes}: with n_control = {self.n_control}, '
-                f'{2 * spans} k + 1 nodes are needed'
-            )
+        require_nodes(self.n_control, self.n_nodes)
 
     @property
     def spline(self) -> RestToRestSpline:

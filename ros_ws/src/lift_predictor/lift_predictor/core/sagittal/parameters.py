@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from lift_predictor.core.exceptions import TaskError
+from lift_predictor.core.parameter_vector import pack_blocks, unpack_blocks
 
 Array = NDArray[np.float64]
 
@@ -119,15 +119,7 @@ class LiftParameters:
         TaskError
             A field of the wrong shape or a value that is not finite.
         """
-        parts = []
-        for name, shape in SHAPES.items():
-            value = np.asarray(getattr(self, name), dtype=float)
-            if value.size != shape[0] * shape[1]:
-                raise TaskError(f'{name}: shape {value.shape}, expected {shape}')
-            if not np.all(np.isfinite(value)):
-                raise TaskError(f'{name}: not finite: {value.tolist()}')
-            parts.append(value.ravel())
-        return np.concatenate(parts)
+        return pack_blocks(self, SHAPES)
 
     @property
     def total_mass(self) -> float:
@@ -137,12 +129,4 @@ class LiftParameters:
 
 def unpack(vector: Any) -> dict[str, Any]:
     """Split a symbolic parameter vector into named blocks (matrices are row-major)."""
-    blocks = {}
-    start = 0
-    for name, (rows, columns) in SHAPES.items():
-        stop = start + rows * columns
-        blocks[name] = [
-            [vector[start + r * columns + c] for c in range(columns)] for r in range(rows)
-        ]
-        start = stop
-    return blocks
+    return unpack_blocks(vector, SHAPES)

@@ -22,7 +22,14 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-SOURCES: Final = ('grid.py', 'kernels.py', 'model.py', 'node_functions.py', 'parameters.py')
+SOURCES: Final = (
+    '../parameter_vector.py',
+    'grid.py',
+    'kernels.py',
+    'model.py',
+    'node_functions.py',
+    'parameters.py',
+)
 """Modules that define the node functions."""
 
 

@@ -22,6 +22,7 @@ from lift_predictor.core.solvers import cache
 
 SOURCES: Final = (
     'bspline.py',
+    'parameter_vector.py',
     'sagittal/grid.py',
     'sagittal/model.py',
     'sagittal/nlp.py',

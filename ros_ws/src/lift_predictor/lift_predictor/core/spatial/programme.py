@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 SOURCES: Final = (
+    'parameter_vector.py',
     'spatial/body.py',
     'spatial/dynamics.py',
     'spatial/grid.py',
