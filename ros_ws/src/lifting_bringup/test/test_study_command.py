@@ -17,6 +17,8 @@ from pathlib import Path
 
 import pytest
 
+from lift_predictor.core.study.store import BATCH
+
 pq = pytest.importorskip('pyarrow.parquet', reason='pyarrow is not installed')
 pytest.importorskip('distributed', reason='Dask is not installed')
 
@@ -24,7 +26,7 @@ PATIENCE = 120.0
 STUDY = """
 name: test
 subjects:
-  sample: {count: %d, seed: 3, sex: {choice: {male: 1, female: 1}}, stature: {normal: [1.7, 0.08]},
+  sample: {count: %d, seed: 4, sex: {choice: {male: 1, female: 1}}, stature: {normal: [1.7, 0.08]},
            bmi: 24, age: 30}
 tasks:
   - {name: given, box_mass: 5.0, box_size: [0.24, 0.3, 0.13], start: [0.37, 0, 0.07],
@@ -71,7 +73,10 @@ def check_complete(found: list[dict], count: int) -> None:
 
 
 def test_killed_study_goes_on_and_solves_nothing_twice(tmp_path: Path) -> None:
-    path, output = study_file(tmp_path, 8), tmp_path / 'out'
+    # More than one batch: however fast the machine, rows are on the disk before the study ends.
+    subjects, cases = 40, 80
+    assert cases > BATCH
+    path, output = study_file(tmp_path, subjects), tmp_path / 'out'
     first = subprocess.Popen(
         command(path, output, '--processes', '1'), stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL, start_new_session=True,
@@ -87,10 +92,10 @@ def test_killed_study_goes_on_and_solves_nothing_twice(tmp_path: Path) -> None:
         first.wait()
     parts = [pq.read_table(part).to_pylist() for part in output.glob('parts/*.parquet')]
     saved = {row['case_id']: row for part in parts for row in part}
-    assert 0 < len(saved) < 16
-    assert f'{len(saved)} of 16 cases were solved before' in run(path, output)
+    assert 0 < len(saved) < cases
+    assert f'{len(saved)} of {cases} cases were solved before' in run(path, output)
     found = rows(output)
-    check_complete(found, 8)
+    check_complete(found, subjects)
     for row in found:
         if row['case_id'] in saved:
             assert row['process'] == saved[row['case_id']]['process']
