@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Loads of lumbar levels, hips and knees in their frames: by hand, and against OpenSim."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from muscle_analyzer.core.disc_frame import FORWARD_LEFT_UP, DiscOption, disc_rotation
 from muscle_analyzer.core.inverse_dynamics import inverse_dynamics
-from muscle_analyzer.core.joint_loads import JointLoadFrames
+from muscle_analyzer.core.joint_loads import JointLoadFrames, loaded_joints, lumbosacral_body
 from muscle_analyzer.core.joint_reaction import joint_reactions
 from muscle_analyzer.core.kinematics import body_jacobians, forward_kinematics
 from muscle_analyzer.core.muscle_path_table import path_table
@@ -106,3 +108,17 @@ def test_squat_loads_are_those_of_opensim(squats):
             peak[name] = max(peak.get(name, 0.0), ours[2])
     # A squat compresses all of them by more than the body weights that rest on them.
     assert min(peak.values()) > 700.0
+
+
+def test_without_vertebrae_the_torso_stands_above_l5_s1(lifting_multibody):
+    """As in gait models: no lumbar levels, hips and knees as before."""
+    names = tuple(name.replace('lumbar', 'level') for name in lifting_multibody.body_names)
+    model = replace(lifting_multibody, body_names=names)
+    assert lumbosacral_body(model) == 'torso'
+    assert lumbosacral_body(lifting_multibody) == 'lumbar5'
+    joints = {joint.name: joint.body for joint in loaded_joints(model)}
+    assert joints == {
+        'l5_s1': 'torso', 'hip_r': 'femur_r', 'hip_l': 'femur_l', 'knee_r': 'tibia_r',
+        'knee_l': 'tibia_l',
+    }  # fmt: skip
+    assert JointLoadFrames(model, DiscOption.BRUNO2015).names == tuple(joints)

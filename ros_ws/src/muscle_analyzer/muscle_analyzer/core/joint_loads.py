@@ -11,13 +11,16 @@ pushed forward on the lower one) is -F_x, lateral shear is +F_y.
 Lumbar levels have the frames of their discs (`disc_frame`).  `bruno2015` gives every level its
 share of the lordosis; `chaffin` knows L5-S1 only, and the levels above it have those of
 `bruno2015`; `vertebral` is not turned.  Hips and knees have the axes of femur and tibia.
+
+In models without lumbar vertebrae (most gait models) the joint that carries the torso stands for
+L5-S1, with the torso in place of the vertebra, and there are no other levels.
 """
 
 from __future__ import annotations
 
 import csv
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.resources import files
 from typing import NamedTuple
 
@@ -37,6 +40,8 @@ Array = NDArray[np.float64]
 
 #: The joint whose frame depends on the posture with `chaffin`.
 LUMBOSACRAL = 'l5_s1'
+#: The body above it, and what stands for that in models without vertebrae.
+L5, TORSO = 'lumbar5', 'torso'
 
 
 @dataclass(frozen=True)
@@ -91,6 +96,24 @@ def read_loaded_joints() -> tuple[LoadedJoint, ...]:
     return tuple(joints)
 
 
+def lumbosacral_body(model: MultibodyModel) -> str:
+    """Give the name of the body above L5-S1: the fifth vertebra, or the torso without one."""
+    return L5 if L5 in model.body_names else TORSO
+
+
+def loaded_joints(model: MultibodyModel) -> tuple[LoadedJoint, ...]:
+    """Give the rows of the table for a model, those of vertebrae only if it has some."""
+    joints = read_loaded_joints()
+    body = lumbosacral_body(model)
+    if body == L5:
+        return joints
+    return tuple(
+        replace(joint, body=body) if joint.name == LUMBOSACRAL else joint
+        for joint in joints
+        if joint.name == LUMBOSACRAL or not joint.disc
+    )
+
+
 class JointLoadFrames:
     """
     Turns the reactions of a model's joints into their anatomical frames.
@@ -109,7 +132,7 @@ class JointLoadFrames:
     """
 
     def __init__(self, model: MultibodyModel, option: DiscOption) -> None:
-        joints = read_loaded_joints()
+        joints = loaded_joints(model)
         self.names = tuple(joint.name for joint in joints)
         self._bodies = np.array([model.body_index(joint.body) for joint in joints])
         self._sign = np.array([1.0 if joint.upper else -1.0 for joint in joints])

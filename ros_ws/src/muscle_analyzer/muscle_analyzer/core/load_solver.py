@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from muscle_analyzer.core.analyzer_options import MuscleAnalyzerOptions
 from muscle_analyzer.core.disc_frame import DiscLoad, disc_load, disc_option, disc_rotation
 from muscle_analyzer.core.inverse_dynamics import inverse_dynamics, wrench_at
-from muscle_analyzer.core.joint_loads import JointLoad, JointLoadFrames
+from muscle_analyzer.core.joint_loads import JointLoad, JointLoadFrames, lumbosacral_body
 from muscle_analyzer.core.joint_reaction import NetMoment, joint_reactions, net_moment
 from muscle_analyzer.core.kinematics import body_jacobians, forward_kinematics
 from muscle_analyzer.core.multibody import MultibodyModel
@@ -32,7 +32,7 @@ from muscle_analyzer.core.static_optimization import MuscleBalance, StaticOptimi
 Array = NDArray[np.float64]
 
 #: Bodies and coordinates of the lifting full-body model that the analysis asks for.
-ROOT, L5, THORAX = 'pelvis', 'lumbar5', 'torso'
+ROOT, THORAX = 'pelvis', 'torso'
 KNEES = ('knee_angle_r', 'knee_angle_l')
 ROOT_COORDINATES = 'pelvis_'
 #: Coordinates of the lumbar joints: every muscle that crosses L5-S1 works on them.
@@ -97,7 +97,8 @@ class LoadSolver:
         self.model = model
         self.disc = disc_option(options.disc_frame)
         self._options = options
-        self._root, self._l5, self._thorax = (model.body_index(b) for b in (ROOT, L5, THORAX))
+        lumbosacral = lumbosacral_body(model)
+        self._root, self._l5, self._thorax = map(model.body_index, (ROOT, lumbosacral, THORAX))
         self._knees = [model.coordinate_index(name) for name in KNEES]
         names = model.coordinate_names
         self._balanced = np.array(

@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 
 from muscle_analyzer.core.analyzer_options import MuscleAnalyzerOptions
 from muscle_analyzer.core.disc_frame import disc_load
-from muscle_analyzer.core.load_solver import L5, ROOT_COORDINATES
+from muscle_analyzer.core.joint_loads import lumbosacral_body
+from muscle_analyzer.core.load_solver import ROOT_COORDINATES
 from muscle_analyzer.core.opensim.answers import Answer, OpenSimRun
 from muscle_analyzer.core.opensim.motion_on_model import MotionOnModel
 from muscle_analyzer.core.opensim.own_side import OwnSide
@@ -184,7 +185,7 @@ def compare(
     def instant(index: tuple[int, ...]) -> str:
         return at[index[0]]
 
-    here = motion.model.body_index(L5)
+    here = motion.model.body_index(lumbosacral_body(motion.model))
     own_rates = OwnSide(motion, options).torques()
     rows_of_table = [
         *_torque_rows(splined, mine.torque, other.torque, ''),
@@ -261,7 +262,7 @@ def _instants(
     optima: list[tuple[float, float, Array]],
 ) -> tuple[Instant, ...]:
     """Return the loads of both sides in the disc frame, instant by instant."""
-    here = own.motion.model.body_index(L5)
+    here = own.motion.model.body_index(lumbosacral_body(own.motion.model))
     found = []
     for i, k in enumerate(rows):
         rotation = own.disc_rotation(int(k))

@@ -16,9 +16,10 @@ from muscle_analyzer.core.analyzer_options import MuscleAnalyzerOptions
 from muscle_analyzer.core.disc_frame import disc_option, disc_rotation
 from muscle_analyzer.core.exceptions import OpenSimError
 from muscle_analyzer.core.inverse_dynamics import inverse_dynamics, wrench_at
+from muscle_analyzer.core.joint_loads import lumbosacral_body
 from muscle_analyzer.core.joint_reaction import joint_reactions
 from muscle_analyzer.core.kinematics import BodyState, body_jacobians, forward_kinematics
-from muscle_analyzer.core.load_solver import KNEES, L5, THORAX, LoadSolver
+from muscle_analyzer.core.load_solver import KNEES, THORAX, LoadSolver
 from muscle_analyzer.core.muscle_path_table import path_table
 from muscle_analyzer.core.muscle_paths import MusclePaths, body_wrenches, posture_paths
 from muscle_analyzer.core.opensim.answers import Answer
@@ -150,7 +151,7 @@ class OwnSide:
         knee = np.mean([self.motion.q[k, model.coordinate_index(name)] for name in KNEES])
         return disc_rotation(
             disc_option(self._options.disc_frame),
-            state.rotation[model.body_index(L5)],
+            state.rotation[model.body_index(lumbosacral_body(model))],
             state.rotation[model.body_index(THORAX)],
             float(knee),
         )
