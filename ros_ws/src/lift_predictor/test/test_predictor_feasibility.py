@@ -11,15 +11,16 @@ import pytest
 
 from human_model.report import SolveReport, SolveStatus
 from lift_predictor.core.exceptions import TaskError
-from lift_predictor.core.predictor import LiftPredictor
-from lift_predictor.core.sagittal.feasibility import (
+from lift_predictor.core.nearest_lift import (
     PLACE_TOLERANCE,
+    NearestLift,
     closer_lift,
     first_limit,
-    missing_way,
     with_nearest,
 )
-from lift_predictor.core.sagittal.prediction import NearestLift, PredictedLift2D
+from lift_predictor.core.predictor import LiftPredictor
+from lift_predictor.core.sagittal.feasibility import missing_way
+from lift_predictor.core.sagittal.prediction import PredictedLift2D
 from lift_predictor.core.sagittal.task import Box
 
 DEPTH = 0.238

@@ -254,10 +254,11 @@ def test_too_heavy_a_box_names_what_breaks(spatial: SpatialPredictor, lift: Lift
     """The heaviest feasible lift comes with it; with a little more weight it is not feasible."""
     predicted = spatial.predict(lift, Box(60.0, DEPTH))
     assert predicted.report.status is SolveStatus.PREDICTOR_INFEASIBLE
-    assert 'the limit that breaks first: joint' in predicted.report.message
+    assert 'no feasible motion: joint torque limit' in predicted.report.message
+    assert 'breaks first' in predicted.report.message
     assert predicted.lift is None
     assert predicted.torque.size == 0
-    nearest = predicted.nearest
+    nearest = predicted.nearest.prediction
     assert nearest.report.ok
     assert MASS < nearest.box_mass < 60.0
     heavier = without_ground_windows(spatial.task(lift, Box(nearest.box_mass + 2.0, DEPTH)))

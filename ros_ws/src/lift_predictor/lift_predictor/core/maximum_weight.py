@@ -15,10 +15,10 @@ from human_model.errors import HumanModelError
 from human_model.motion import Lift
 from human_model.report import SolveReport, SolveStatus
 from lift_predictor.core.exceptions import TaskError, UnreachableError
+from lift_predictor.core.nearest_lift import TIE_BREAK
 from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.sagittal.comparison import LiftComparison
 from lift_predictor.core.sagittal.evaluation import total_effort
-from lift_predictor.core.sagittal.feasibility import TIE_BREAK
 from lift_predictor.core.sagittal.grid import WEIGHT_OFFSET
 from lift_predictor.core.sagittal.prediction import PredictedLift2D
 from lift_predictor.core.sagittal.starts import make_starts

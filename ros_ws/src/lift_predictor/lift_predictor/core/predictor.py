@@ -18,22 +18,16 @@ from human_model.motion import Lift
 from human_model.report import SolveReport, SolveStatus
 from human_model.subject import Subject
 from lift_predictor.core.exceptions import AsymmetricLiftError, TaskError, UnreachableError
+from lift_predictor.core.nearest_lift import HOPELESS, NearestLift, closer_lift, with_nearest
 from lift_predictor.core.sagittal.comparison import LiftComparison, compare
 from lift_predictor.core.sagittal.evaluation import evaluate, sample, total_effort
-from lift_predictor.core.sagittal.feasibility import (
-    HOPELESS,
-    closer_lift,
-    lighter_lift,
-    missing_way,
-    way_to,
-    with_nearest,
-)
+from lift_predictor.core.sagittal.feasibility import lighter_lift, missing_way, way_to
 from lift_predictor.core.sagittal.grid import Grid
 from lift_predictor.core.sagittal.lift_motion import body_motion, mtp_torque, sample_times
 from lift_predictor.core.sagittal.optimiser import LiftOptimiser
 from lift_predictor.core.sagittal.outcome import judge
 from lift_predictor.core.sagittal.person import COEFFICIENT_SET, Person
-from lift_predictor.core.sagittal.prediction import TORQUE_NAMES, NearestLift, PredictedLift2D
+from lift_predictor.core.sagittal.prediction import TORQUE_NAMES, PredictedLift2D
 from lift_predictor.core.sagittal.solved_lifts import library_starts
 from lift_predictor.core.sagittal.starts import make_starts
 from lift_predictor.core.sagittal.task import POSTURE_TOLERANCE, Box, LiftTask2D, build_task
@@ -217,7 +211,7 @@ class LiftPredictor:
 
     def _explained(self, failed: PredictedLift2D, lift: Lift, box: Box) -> PredictedLift2D:
         """Add the limit that breaks first, and the nearest feasible lift, to a failed result."""
-        nearest: NearestLift | None = None
+        nearest: NearestLift[PredictedLift2D] | None = None
         if failed.report.status is not SolveStatus.PREDICTOR_UNREACHABLE:
             nearest = self.lighter_lift(self._task(lift, box))
         if nearest is None and not (box.start is None and box.end is None):
@@ -232,7 +226,7 @@ class LiftPredictor:
 
     def lighter_lift(
         self, task: LiftTask2D, starts: Sequence[Start] | None = None
-    ) -> NearestLift | None:
+    ) -> NearestLift[PredictedLift2D] | None:
         """Find the lift of an infeasible task with the largest mass that can be lifted so.
 
         Parameters

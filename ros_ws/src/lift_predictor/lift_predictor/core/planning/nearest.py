@@ -16,9 +16,10 @@ from typing import Final
 
 import numpy as np
 
+from lift_predictor.core.nearest_lift import NearestLift, closer_lift
 from lift_predictor.core.planning.plan_task import PlanTask, Point
-from lift_predictor.core.sagittal.feasibility import closer_lift, missing_way
-from lift_predictor.core.sagittal.prediction import NearestLift, PredictedLift2D
+from lift_predictor.core.sagittal.feasibility import missing_way
+from lift_predictor.core.sagittal.prediction import PredictedLift2D
 
 STANDARD_HEIGHT: Final = 0.75
 STANDARD_DISTANCE: Final = 0.20
@@ -32,7 +33,7 @@ PlanPrediction = Callable[[PlanTask], PredictedLift2D]
 
 def nearest_plan(
     plan: PlanPrediction, task: PlanTask, failed: PredictedLift2D
-) -> NearestLift | None:
+) -> NearestLift[PredictedLift2D] | None:
     """Move the places of a task towards the standard location until it can be done.
 
     Parameters

@@ -12,14 +12,14 @@ from human_model.report import SolveReport, SolveStatus
 from human_model.subject import Subject
 from lift_predictor.core.exceptions import TaskError, UnreachableError
 from lift_predictor.core.maximum_weight import Weighting
+from lift_predictor.core.nearest_lift import HOPELESS, NearestLift, with_nearest
 from lift_predictor.core.planning.build import build_plan
 from lift_predictor.core.planning.feet import Placement, place_feet
 from lift_predictor.core.planning.nearest import nearest_plan
 from lift_predictor.core.planning.plan_task import PlanTask
 from lift_predictor.core.planning.solve import Listener, SolvedPlan, solve_plan
 from lift_predictor.core.predictor import LiftPredictor
-from lift_predictor.core.sagittal.feasibility import HOPELESS, with_nearest
-from lift_predictor.core.sagittal.prediction import NearestLift, PredictedLift2D
+from lift_predictor.core.sagittal.prediction import PredictedLift2D
 
 if TYPE_CHECKING:
     from lift_predictor.core.spatial.prediction import PredictedLift3D
@@ -125,7 +125,7 @@ class LiftPlanner:
         failed = planned.prediction
         if failed.report.status not in HOPELESS or not isinstance(failed, PredictedLift2D):
             return planned
-        nearest: NearestLift | None = None
+        nearest: NearestLift[PredictedLift2D] | None = None
         if failed.report.status is not SolveStatus.PREDICTOR_UNREACHABLE and task.box_mass:
             # Where the lift was sought: with free feet, at the place that came nearest.
             nearest = self._lighter(task, planned.ankle)
@@ -137,7 +137,7 @@ class LiftPlanner:
             )
         return replace(planned, prediction=with_nearest(failed, nearest))
 
-    def _lighter(self, task: PlanTask, ankle: float) -> NearestLift | None:
+    def _lighter(self, task: PlanTask, ankle: float) -> NearestLift[PredictedLift2D] | None:
         if self.predictor.person is None:
             raise TaskError('subject: none was configured before the plan')
         plan = build_plan(self.predictor.person, task, ankle)

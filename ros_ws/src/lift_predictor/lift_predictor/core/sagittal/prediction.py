@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from human_model.motion import Lift
 from human_model.report import SolveReport
+from lift_predictor.core.nearest_lift import NearestLift
 from lift_predictor.core.sagittal.parameters import JOINTS
 from lift_predictor.core.sagittal.verify import Verification
 from lift_predictor.core.solvers.optimum import Optimum
@@ -19,25 +20,6 @@ from lift_predictor.core.solvers.optimum import Optimum
 Array = NDArray[np.float64]
 
 TORQUE_NAMES: Final = (*JOINTS, 'mtp_angle')
-
-
-@dataclass(frozen=True, eq=False)
-class NearestLift:
-    """What can be done instead of an infeasible task; see `feasibility`.
-
-    Attributes
-    ----------
-    limit : str
-        Name of the limit that breaks first.
-    change : str
-        What is changed, by how much.
-    prediction : PredictedLift2D
-        The changed lift, solved and checked.
-    """
-
-    limit: str
-    change: str
-    prediction: PredictedLift2D
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +68,7 @@ class PredictedLift2D:
     optima: tuple[Optimum, ...]
     verification: Verification | None
     notes: tuple[str, ...]
-    nearest: NearestLift | None = None
+    nearest: NearestLift[PredictedLift2D] | None = None
 
     @classmethod
     def failed(

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""What can be done instead of an infeasible lift, and the limit that keeps it from more."""
+"""Limits that hold a lift in space back, and the heaviest that can be done instead."""
 
 from __future__ import annotations
 
@@ -9,10 +9,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from human_model.report import SolveStatus
-from lift_predictor.core.sagittal.feasibility import TIE_BREAK
+from lift_predictor.core.nearest_lift import TIE_BREAK, NearestLift, lighter
+from lift_predictor.core.solvers.optimum import BINDING
 from lift_predictor.core.solvers.solution import Solution
-from lift_predictor.core.spatial.grid import SpatialGrid
+from lift_predictor.core.spatial.grid import (
+    HAND_ROWS,
+    LIMITED,
+    NODE_ROWS,
+    SpatialBounds,
+    SpatialGrid,
+    plain_bounds,
+    row_slice,
+)
+from lift_predictor.core.spatial.parameters import DEPENDENT
 from lift_predictor.core.spatial.prediction import PredictedLift3D
 from lift_predictor.core.spatial.starts import SpatialStart
 from lift_predictor.core.spatial.task import SpatialTask
@@ -20,51 +29,71 @@ from lift_predictor.core.spatial.task import SpatialTask
 Solve = Callable[[SpatialTask, Sequence[SpatialStart]], PredictedLift3D]
 
 
-def binding_limit(solution: Solution, grid: SpatialGrid) -> str:
-    """Name of the row with the largest multiplier; rows are scaled to the range of their limit.
+def binding_limits(
+    task: SpatialTask, grid: SpatialGrid, solution: Solution
+) -> tuple[tuple[str, float], ...]:
+    """Inequalities with a multiplier above `BINDING`, in the order of its size.
 
-    The hands' places (3.13) are left out: they are the task, not a limit.
-    """
-    inequalities = len(grid.row_names) - 12
-    return grid.row_names[int(np.argmax(np.abs(solution.row_multiplier[:inequalities])))]
-
-
-def with_lighter_lift(
-    failed: PredictedLift3D,
-    task: SpatialTask,
-    starts: Sequence[SpatialStart],
-    solve: Solve,
-    grid: SpatialGrid,
-) -> PredictedLift3D:
-    """Add the heaviest feasible lift, and what limits it, to an infeasible one.
+    Rows are scaled to the range of their limit. Where hands and box have to be (3.11 to 3.13) is
+    left out: that is the task, not a limit. Where a recording or a technique narrows a limit, the
+    name says that it is a window.
 
     Parameters
     ----------
-    failed : PredictedLift3D
-        Infeasible.
     task : SpatialTask
-        Its task.
-    starts : sequence of SpatialStart
-        Initial guesses.
-    solve : callable
-        Solves and checks a task.
+        That was solved.
     grid : SpatialGrid
         Sizes of the programme.
+    solution : Solution
+        Of the task, or of the task with margins.
     """
-    mass = float(task.bounds.box_mass[1])
-    if failed.report.status is not SolveStatus.PREDICTOR_INFEASIBLE or mass == 0.0:
-        return failed
-    lighter = replace(
-        task,
-        bounds=replace(task.bounds, box_mass=np.array([0.0, mass])),
-        parameters=replace(task.parameters, objective=np.array([TIE_BREAK, 1.0])),
+    low, high = task.bounds.rows()
+    size = np.where(low < high, np.abs(solution.row_multiplier), 0.0)
+    node = size[: grid.n_nodes * len(NODE_ROWS)].reshape(grid.n_nodes, -1)
+    node[:, row_slice(HAND_ROWS)] = 0.0
+    person = task.person
+    limits = plain_bounds(grid.n_nodes, person.limits(DEPENDENT), person.limits(LIMITED))
+    plain = replace(
+        task.bounds, node_lower=limits[0], node_upper=limits[1], angle_lower=limits[2],
+        angle_upper=limits[3],
+    ).rows()  # fmt: skip
+    narrowed = np.where(solution.row_multiplier > 0.0, high < plain[1], low > plain[0])
+    order = np.argsort(-size, kind='stable')[: np.count_nonzero(size > BINDING)]
+    return tuple(
+        (f'{"window on " if narrowed[i] else ""}{grid.row_names[i]}', float(size[i]))
+        for i in order
     )
-    nearest = solve(lighter, [replace(start, box_mass=0.0) for start in starts])
-    if not nearest.report.ok:
-        return failed
-    limit = binding_limit(nearest.optima[0].solution, grid)
-    words = (
-        f'{failed.report.message}; nearest feasible lift: with {nearest.box_mass:.1f} kg instead '
-        f'of {mass:.1f} kg; the limit that breaks first: {limit}'
-    )
-    return replace(failed, report=replace(failed.report, message=words), nearest=nearest)
+
+
+def lighter_lift(
+    solve: Solve, task: SpatialTask, starts: Sequence[SpatialStart], grid: SpatialGrid
+) -> NearestLift[PredictedLift3D] | None:
+    """Find the same lift with the largest mass up to the task's.
+
+    Parameters
+    ----------
+    solve : callable
+        Solves and checks a task.
+    task : SpatialTask
+        Without a solution for its mass.
+    starts : sequence of SpatialStart
+        Initial guesses.
+    grid : SpatialGrid
+        Sizes of the programme.
+
+    Returns
+    -------
+    NearestLift or None
+        None: not even empty hands can move so, or all of the mass can be lifted.
+    """
+    asked = float(task.bounds.box_mass[1])
+    if asked == 0.0:
+        return None
+    bounds: SpatialBounds = replace(task.bounds, box_mass=np.array([0.0, asked]))
+    parameters = replace(task.parameters, objective=np.array([TIE_BREAK, 1.0]))
+    open_task = replace(task, bounds=bounds, parameters=parameters)
+    found = solve(open_task, [replace(start, box_mass=0.0) for start in starts])
+    if not found.report.ok:
+        return None
+    names = [name for name, _ in binding_limits(open_task, grid, found.optima[0].solution)]
+    return lighter(found, asked, names)

@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from lift_predictor.core.maximum_weight import LARGEST_WEIGHT, Normalisation, Weighting
-from lift_predictor.core.sagittal.feasibility import TIE_BREAK
+from lift_predictor.core.nearest_lift import TIE_BREAK
 from lift_predictor.core.spatial.evaluation import evaluate, sample
 from lift_predictor.core.spatial.grid import WEIGHT_OFFSET
 from lift_predictor.core.spatial.prediction import PredictedLift3D

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from human_model.motion import Lift
 from human_model.report import SolveReport
+from lift_predictor.core.nearest_lift import NearestLift
 from lift_predictor.core.solvers.solution import Solution
 from lift_predictor.core.spatial.evaluation import SpatialLoads
 from lift_predictor.core.spatial.verify import SpatialVerification
@@ -37,6 +38,11 @@ class SpatialOptimum:
     def converged(self) -> bool:
         """Whether it is a solution."""
         return self.solution.ok
+
+    @property
+    def violated(self) -> str:
+        """Name of the row that is violated most; empty: none."""
+        return self.solution.violated[0][0] if self.solution.violated else ''
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,8 +75,8 @@ class PredictedLift3D:
         Dense-grid check.
     notes : tuple of str
         Adaptations of the task, and how the functions were run.
-    nearest : PredictedLift3D or None
-        The heaviest feasible lift, where the task is infeasible and there is one.
+    nearest : NearestLift or None
+        What can be done instead of an infeasible task, if anything.
     """
 
     lift_id: str
@@ -88,7 +94,7 @@ class PredictedLift3D:
     optima: tuple[SpatialOptimum, ...]
     verification: SpatialVerification | None
     notes: tuple[str, ...]
-    nearest: PredictedLift3D | None = None
+    nearest: NearestLift[PredictedLift3D] | None = None
 
     @property
     def control(self) -> Array:

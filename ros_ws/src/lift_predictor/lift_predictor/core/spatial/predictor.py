@@ -18,13 +18,14 @@ from human_model.motion import Lift
 from human_model.report import SolveReport, SolveStatus
 from human_model.subject import Subject
 from lift_predictor.core.exceptions import TaskError
+from lift_predictor.core.nearest_lift import HOPELESS, with_nearest
 from lift_predictor.core.sagittal.task import Box
 from lift_predictor.core.solvers.library import NodeLibrary
 from lift_predictor.core.solvers.solution import InteriorPointOptions, Solution, Status
 from lift_predictor.core.solvers.solve import solve
 from lift_predictor.core.spatial.comparison import SpatialComparison, compare
 from lift_predictor.core.spatial.evaluation import evaluate, sample
-from lift_predictor.core.spatial.feasibility import with_lighter_lift
+from lift_predictor.core.spatial.feasibility import lighter_lift
 from lift_predictor.core.spatial.grid import SpatialGrid
 from lift_predictor.core.spatial.lift_motion import (
     body_motion,
@@ -195,10 +196,12 @@ class SpatialPredictor:
         starts = recorded_starts(task, self.grid)
         prediction = self.solve_task(task, starts, progress, begin)
         if not prediction.report.ok:
+            if prediction.report.status not in HOPELESS:
+                return prediction, None
             # Ground reactions were recorded with another weight.
             free = without_ground_windows(task)
-            explained = with_lighter_lift(prediction, free, starts, self.solve_task, self.grid)
-            return explained, None
+            nearest = lighter_lift(self.solve_task, free, starts, self.grid)
+            return with_nearest(prediction, nearest), None
         return prediction, compare(self.library, task, prediction)
 
     def solve_task(
