@@ -29,7 +29,7 @@ from human_model.report import SolveReport
 from lift_predictor.core.exceptions import LiftPredictorError
 from lift_predictor.core.maximum_weight import Weighting
 from lift_predictor.core.sagittal.task import Box
-from lift_predictor.core.solvers.solution import InteriorPointOptions, Solution
+from lift_predictor.core.solvers.solution import Solution
 from lift_predictor.core.solvers.solve import solve
 from lift_predictor.core.spatial.frame import StanceFrame
 from lift_predictor.core.spatial.maximum_weight import FAR, maximum_weight, open_mass
@@ -168,11 +168,11 @@ def single(
     predictor: SpatialPredictor, task: SpatialTask, x0: Any, warm: Solution | None = None
 ) -> Solution:
     """One solve, without the check between the nodes."""
-    options = InteriorPointOptions(max_iterations=400, barrier=predictor.options.barrier)
     programme = spatial_programme(
         predictor.assembler, predictor.grid, task.parameters, task.bounds
     )
-    return solve(programme, np.clip(x0, programme.lower, programme.upper), options, warm)
+    x0 = np.clip(x0, programme.lower, programme.upper)
+    return solve(programme, x0, predictor.options.interior_point(), warm)
 
 
 def pair(key: str, predictor: SpatialPredictor, task: SpatialTask, x0: Any) -> dict[str, float]:
