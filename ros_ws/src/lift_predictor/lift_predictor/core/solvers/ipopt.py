@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 import casadi as ca
@@ -42,10 +42,16 @@ class LiftSolver:
         Wall time of one IPOPT run at most [s].
     max_iterations : int
         Iterations of one run at most.
+    settings : mapping, optional
+        Further options of IPOPT by their names in its manual.
     """
 
     def __init__(
-        self, programme: Programme, time_limit: float = 10.0, max_iterations: int = 500
+        self,
+        programme: Programme,
+        time_limit: float = 10.0,
+        max_iterations: int = 500,
+        settings: Mapping[str, Any] | None = None,
     ) -> None:
         self.programme = programme
         self.time_limit = time_limit
@@ -59,6 +65,7 @@ class LiftSolver:
             'ipopt.max_iter': max_iterations,
             'ipopt.max_wall_time': time_limit,
         }
+        options |= {f'ipopt.{name}': value for name, value in (settings or {}).items()}
         if programme.library is not None:
             self._ipopt = ca.nlpsol('lift', 'ipopt', str(programme.library), options)
         else:
