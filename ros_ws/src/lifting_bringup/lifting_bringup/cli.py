@@ -12,7 +12,13 @@ import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from lifting_bringup import emg_command, opensim_command, planning_command, study_command
+from lifting_bringup import (
+    emg_command,
+    opensim_command,
+    planning_command,
+    study_command,
+    urdf_command,
+)
 from lifting_bringup.bags.exceptions import BagError
 from lifting_bringup.graph_errors import GraphError
 from lifting_bringup.node_process import discovery, node_processes
@@ -98,6 +104,7 @@ def _parser() -> argparse.ArgumentParser:
     emg_command.add_to(commands)
     planning_command.add_to(commands)
     study_command.add_to(commands)
+    urdf_command.add_to(commands)
     return parser
 
 

@@ -198,16 +198,32 @@ def read_subject_file(path: str | Path) -> SubjectFile:
         Naming file, field and value.
     """
     path = Path(path)
-    try:
-        data = yaml.safe_load(path.read_text(encoding='utf-8'))
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
-        raise SubjectFileError(f'{path}: cannot be read: {error}') from error
-    whole = _Section(path, 'file', data)
+    whole = _whole(path)
     subject = _subject(_Section(path, 'subject', whole.take('subject', None)))
     task = _task(_Section(path, 'task', whole.take('task', None)))
     recording = _recording(_Section(path, 'recording', whole.take('recording', {})))
     whole.finish()
     return SubjectFile(path, subject, task, recording)
+
+
+def read_person(path: str | Path) -> SubjectEntry:
+    """Read only who it is: section `subject` of a subject file or of a task file.
+
+    Raises
+    ------
+    SubjectFileError
+        Naming file, field and value.
+    """
+    path = Path(path)
+    return _subject(_Section(path, 'subject', _whole(path).take('subject', None)))
+
+
+def _whole(path: Path) -> _Section:
+    try:
+        data = yaml.safe_load(path.read_text(encoding='utf-8'))
+    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        raise SubjectFileError(f'{path}: cannot be read: {error}') from error
+    return _Section(path, 'file', data)
 
 
 def _subject(section: _Section) -> SubjectEntry:
