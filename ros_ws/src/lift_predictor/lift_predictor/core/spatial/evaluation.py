@@ -5,13 +5,13 @@
 from __future__ import annotations
 
 import ctypes
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lift_predictor.core.solvers.library import NodeLibrary
-from lift_predictor.core.spatial.grid import REPORT_OUTPUTS, SpatialGrid
+from lift_predictor.core.spatial.grid import HAND_SCALE, REPORT_OUTPUTS, SpatialGrid
 from lift_predictor.core.spatial.parameters import SpatialParameters
 
 Array = NDArray[np.float64]
@@ -111,6 +111,15 @@ def evaluate(
     for name in ('effort', 'share'):
         values[name] = values[name][:, 0]
     return SpatialLoads(**values)
+
+
+def lowering(
+    library: NodeLibrary, q: Array, parameters: SpatialParameters
+) -> tuple[Array, Array]:
+    """How far hips and C7 are below their height in upright standing in postures q (n, 26) [m]."""
+    whole = replace(parameters, technique=np.array([0.0, 1.0])).pack()
+    hips, rest = HAND_SCALE * _run(library, 'technique', np.ascontiguousarray(q), whole).T
+    return hips, hips + rest
 
 
 def _run(library: NodeLibrary, name: str, inputs: Array, parameters: Array) -> Array:

@@ -38,6 +38,10 @@ WAY_ROWS: Final = (
     'box in its sector, right edge', 'box in its sector, left edge', 'box above its lower place',
 )  # fmt: skip
 HAND_ROWS: Final = ('distance of the hands (3.11)', 'box level (3.12)')
+TECHNIQUE_ROWS: Final = (
+    'technique: largest Stoop-Squat-Index of the first posture',
+    'technique: least Stoop-Squat-Index of the first posture',
+)
 NODE_ROWS: Final = (
     *TORQUE_ROWS, *ANGLE_ROWS, *GROUND_ROWS, *COLLISION_ROWS, *WAY_ROWS, *HAND_ROWS,
 )  # fmt: skip
@@ -126,7 +130,7 @@ class SpatialGrid:
 
     @cached_property
     def row_names(self) -> tuple[str, ...]:
-        """Name of every constraint row, for messages."""
+        """Name of every constraint row, for messages; those of a technique come last."""
         percent = [f'{100 * s:.0f} % of the lift' for s in self.times]
         return (
             *(f'{row} at {when}' for when in percent for row in NODE_ROWS),
@@ -137,6 +141,7 @@ class SpatialGrid:
                 for side in _SIDES
                 for axis in ('forward', 'left', 'up')
             ),
+            *TECHNIQUE_ROWS,
         )
 
     def variable_name(self, index: int) -> str:
@@ -162,6 +167,8 @@ class SpatialBounds:
         Right and left grip at start and end (3.13) [m].
     box_mass, duration : array, shape (2,)
         Lower and upper bound [kg], [s]; equal: given.
+    technique : bool
+        Whether the first posture is held in the technique of the parameters.
     """
 
     node_lower: Array
@@ -171,6 +178,7 @@ class SpatialBounds:
     hand: Array
     box_mass: Array
     duration: Array
+    technique: bool = False
 
     def variables(self, grid: SpatialGrid) -> tuple[Array, Array]:
         """Bounds of the variables; control values have none, their coordinates have rows."""
@@ -181,9 +189,12 @@ class SpatialBounds:
     def rows(self) -> tuple[Array, Array]:
         """Bounds of the rows, in the order of `SpatialGrid.row_names`."""
         hand = self.hand.ravel() / HAND_SCALE
+        style = np.zeros(len(TECHNIQUE_ROWS) if self.technique else 0)
         return (
-            np.concatenate((self.node_lower.ravel(), self.angle_lower.ravel(), hand)),
-            np.concatenate((self.node_upper.ravel(), self.angle_upper.ravel(), hand)),
+            np.concatenate((self.node_lower.ravel(), self.angle_lower.ravel(), hand, style)),
+            np.concatenate(
+                (self.node_upper.ravel(), self.angle_upper.ravel(), hand, style + np.inf)
+            ),
         )
 
 

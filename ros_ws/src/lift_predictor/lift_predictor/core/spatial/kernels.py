@@ -11,7 +11,7 @@ import casadi as ca
 from lift_predictor.core.sagittal.model import strength
 from lift_predictor.core.solvers.node_function import NodeFunction
 from lift_predictor.core.solvers.sweeps import SweptFunction
-from lift_predictor.core.spatial.body import body_state
+from lift_predictor.core.spatial.body import BodyState, body_state
 from lift_predictor.core.spatial.dynamics import loads
 from lift_predictor.core.spatial.grid import (
     HAND_SCALE,
@@ -37,7 +37,8 @@ def kernel_functions() -> list[NodeFunction]:
 
     `node` (z = splined coordinates and two derivatives by normalised time, s = `SCALARS`): cost
     a T effort - b log(W + 10), whose mean over the lift is the objective (3.9), and `NODE_ROWS`;
-    `angle`: `LIMITED`; `hand`: right and left grip; `report`: `REPORT_OUTPUTS`.
+    `angle`: `LIMITED`; `hand`: right and left grip; `technique`: how far the hips are lowered
+    beyond the least and short of the largest part of C7's lowering; `report`: `REPORT_OUTPUTS`.
     """
     z, s = ca.SX.sym('z', N_NODE), ca.SX.sym('s', N_SCALARS)
     p, none = ca.SX.sym('p', N_PARAMETERS), ca.SX(0, 1)
@@ -57,12 +58,14 @@ def kernel_functions() -> list[NodeFunction]:
         (3 * n + 1,),
     )
     posture, still = ca.SX.sym('q', N_SPLINED), ca.SX(N_SPLINED, 1)
-    right, left = body_state(posture, still, still, p).hand
+    state = body_state(posture, still, still, p)
+    right, left = state.hand
     report = ca.vertcat(*(ca.vec(instant[name]) for name, _ in REPORT_OUTPUTS))
     return [
         SweptFunction('node', z, s, p, instant['rows'], cost, sets=sets),
         NodeFunction('angle', posture, none, p, posture[N_SPLINED - len(LIMITED) :]),
         NodeFunction('hand', posture, none, p, ca.vertcat(right[0], left[0]) / HAND_SCALE),
+        NodeFunction('technique', posture, none, p, _technique(state, p) / HAND_SCALE),
         NodeFunction('report', z, s, p, report, differentiable=False),
     ]
 
@@ -78,6 +81,17 @@ def torque_limits(angle: dict[str, Any], rate: dict[str, Any], p: Any) -> tuple[
             own.append(row[0] if constant else strength(angle[name], rate[name], row))
         limits.append(ca.vertcat(*own))
     return limits[0], limits[1]
+
+
+def _technique(state: BodyState, p: Any) -> Any:
+    """Room to both ends of the range of the Stoop-Squat-Index, by the hips [m]."""
+    blocks = unpack(p)
+    forward, up, hips_upright, c7_upright = blocks['standing'][0]
+    least, most = blocks['technique'][0]
+    thorax = state.segment['thorax']
+    c7 = c7_upright - (thorax.place + thorax.turning.place([forward, 0.0, up]))[2]
+    hips = hips_upright - state.segment['pelvis'].place[2]
+    return ca.vertcat(hips - least * c7, most * c7 - hips)
 
 
 def _instant(q: Any, dq: Any, ddq: Any, mass: Any, p: Any) -> dict[str, Any]:

@@ -121,6 +121,8 @@ SHAPES: Final[dict[str, tuple[int, int]]] = {
     'box_from_hand': (1, 3),
     'way': (3, 4),
     'objective': (1, 2),
+    'standing': (1, 4),
+    'technique': (1, 2),
 }
 N_PARAMETERS: Final = sum(rows * columns for rows, columns in SHAPES.values())
 
@@ -173,6 +175,11 @@ class SpatialParameters:
     objective : array, shape (2,)
         Factors a and b of the objective a effort - b log(W + 10), W in N (equation 3.9 with
         weights and normalisation multiplied).
+    standing : array, shape (4,)
+        C7 forward and up from T12-L1; heights of hips and C7 in upright standing [m].
+    technique : array, shape (2,)
+        Least and largest part of C7's lowering that the hips are lowered by at the start, where
+        a technique is asked for.
     """
 
     body: Array
@@ -193,7 +200,9 @@ class SpatialParameters:
     box_turning: float
     box_from_hand: Array
     way: Array
+    standing: Array
     objective: Array = field(default_factory=lambda: np.array([1.0, 0.0]))
+    technique: Array = field(default_factory=lambda: np.array([0.0, 1.0]))
 
     def pack(self) -> Array:
         """Return the parameter vector of the compiled functions, shape (N_PARAMETERS,).

@@ -52,6 +52,8 @@ class SpatialPerson:
         Torque limits.
     body, pelvis, spine, arm, leg, strength_lower, strength_upper, sphere, sole
         As in `SpatialParameters`.
+    standing : array, shape (4,)
+        As in `SpatialParameters`.
     ankle_height : float
         Ankle over the sole [m].
     gravity : float
@@ -70,6 +72,7 @@ class SpatialPerson:
     strength_upper: Array
     sphere: Array
     sole: Array
+    standing: Array
     ankle_height: float
     gravity: float = GRAVITY
 
@@ -117,6 +120,7 @@ class SpatialPerson:
             strength_upper=_strength(strength, 'upper'),
             sphere=_spheres(subject, skeleton),
             sole=np.array([-length['heel_length'], length['ankle_mtp'] + length['toes']]),
+            standing=_standing(skeleton),
             ankle_height=float(length['ankle_height']),
         )
 
@@ -134,7 +138,7 @@ class SpatialPerson:
     def fields(self) -> dict[str, Any]:
         """Return the person's fields of `SpatialParameters`."""
         names = ('body', 'pelvis', 'spine', 'arm', 'leg', 'strength_lower', 'strength_upper',
-                 'sphere', 'sole', 'gravity')  # fmt: skip
+                 'sphere', 'sole', 'standing', 'gravity')  # fmt: skip
         return {name: getattr(self, name) for name in names} | {'inward_lean': INWARD_LEAN}
 
 
@@ -157,6 +161,16 @@ def _strength(strength: JointStrength, side: str) -> Array:
         c[[5, 6]] /= bound.speed_factor, abs(bound.speed_factor)
         rows.append(c)
     return np.array(rows)
+
+
+def _standing(skeleton: Skeleton3D) -> Array:
+    upright = skeleton.standing()
+    points = skeleton.points(upright)
+    thorax = skeleton.forward(upright)[skeleton.parameters.index('thorax'), :3, 3]
+    ground = points['ankle_r'][2] - float(skeleton.parameters.lengths['ankle_height'])
+    forward, _, up = points['c7'] - thorax
+    hips = 0.5 * (points['hip_r'] + points['hip_l'])
+    return np.array([forward, up, hips[2] - ground, points['c7'][2] - ground])
 
 
 def _bodies(skeleton: Skeleton3D) -> Array:

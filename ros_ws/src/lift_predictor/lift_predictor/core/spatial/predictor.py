@@ -23,6 +23,7 @@ from lift_predictor.core.sagittal.task import Box
 from lift_predictor.core.solvers.library import NodeLibrary
 from lift_predictor.core.solvers.solution import InteriorPointOptions, Solution, Status
 from lift_predictor.core.solvers.solve import solve
+from lift_predictor.core.solvers.spline_programme import Assembler
 from lift_predictor.core.spatial.comparison import SpatialComparison, compare
 from lift_predictor.core.spatial.evaluation import evaluate, sample
 from lift_predictor.core.spatial.feasibility import lighter_lift
@@ -133,6 +134,7 @@ class SpatialPredictor:
         self.grid = SpatialGrid(self.options.n_control, self.options.n_nodes)
         self.library: NodeLibrary = spatial_library()
         self.assembler = spatial_assembler(self.library, self.grid)
+        self._with_technique: Assembler | None = None
 
     def configure(self, subject: Subject, segments: SegmentParameters | None = None) -> None:
         """Set the subject, and the segments of the skeleton if they are not to be estimated.
@@ -275,7 +277,12 @@ class SpatialPredictor:
         warm: Solution | None = None,
         barrier: float | None = None,
     ) -> SpatialOptimum:
-        programme = spatial_programme(self.assembler, self.grid, task.parameters, task.bounds)
+        assembler = self.assembler
+        if task.bounds.technique:
+            if self._with_technique is None:
+                self._with_technique = spatial_assembler(self.library, self.grid, technique=True)
+            assembler = self._with_technique
+        programme = spatial_programme(assembler, self.grid, task.parameters, task.bounds)
         x0 = np.clip(x0, programme.lower, programme.upper)
         options = self.options.interior_point(barrier)
         return SpatialOptimum(name, solve(programme, x0, options, warm))

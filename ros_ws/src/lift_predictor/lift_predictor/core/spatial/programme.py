@@ -14,7 +14,13 @@ from lift_predictor.core.bspline import simpson_weights
 from lift_predictor.core.solvers.layout import Channel, Group
 from lift_predictor.core.solvers.library import NodeLibrary, load_library
 from lift_predictor.core.solvers.spline_programme import Assembler, SplineProgramme, make_assembler
-from lift_predictor.core.spatial.grid import LIMITED, NODE_ROWS, SpatialBounds, SpatialGrid
+from lift_predictor.core.spatial.grid import (
+    LIMITED,
+    NODE_ROWS,
+    TECHNIQUE_ROWS,
+    SpatialBounds,
+    SpatialGrid,
+)
 from lift_predictor.core.spatial.parameters import N_SCALARS, N_SPLINED, SpatialParameters
 
 if TYPE_CHECKING:
@@ -52,8 +58,10 @@ def spatial_library() -> NodeLibrary:
     return load_library('spatial', [core / name for name in SOURCES], make)
 
 
-def spatial_assembler(library: NodeLibrary, grid: SpatialGrid) -> Assembler:
-    """Assembler of a grid, for all persons and tasks."""
+def spatial_assembler(
+    library: NodeLibrary, grid: SpatialGrid, technique: bool = False
+) -> Assembler:
+    """Assembler of a grid, for all persons and tasks with or without a technique."""
 
     def splines(times: Array, orders: int) -> tuple[Channel]:
         basis = np.stack([grid.spline.basis(times, order) for order in range(orders)])
@@ -66,6 +74,9 @@ def spatial_assembler(library: NodeLibrary, grid: SpatialGrid) -> Assembler:
         Group('angle', splines(grid.times, 1), (), len(LIMITED), np.zeros(grid.n_nodes)),
         Group('hand', splines(np.array([0.0, 1.0]), 1), (), 6, np.zeros(2)),
     ]
+    if technique:
+        channels = splines(np.array([0.0]), 1)
+        groups.append(Group('technique', channels, (), len(TECHNIQUE_ROWS), np.zeros(1)))
     return make_assembler(library, groups, grid.n_variables)
 
 

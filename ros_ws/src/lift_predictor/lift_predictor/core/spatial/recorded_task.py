@@ -15,14 +15,12 @@ from lift_predictor.core.sagittal.task import Box
 from lift_predictor.core.spatial.clearance import recorded_gaps
 from lift_predictor.core.spatial.frame import StanceFrame, splined_motion
 from lift_predictor.core.spatial.grid import (
-    ANGLE_ROWS,
     GROUND_ROWS,
-    LIMITED,
     SpatialBounds,
     SpatialGrid,
     row_slice,
 )
-from lift_predictor.core.spatial.parameters import DEPENDENT, SIDES, SpatialParameters
+from lift_predictor.core.spatial.parameters import SIDES, SpatialParameters
 from lift_predictor.core.spatial.person import SpatialPerson
 from lift_predictor.core.spatial.task import (
     INSTANTS,
@@ -33,6 +31,7 @@ from lift_predictor.core.spatial.task import (
     Windows,
     place_task,
 )
+from lift_predictor.core.spatial.windows import near_posture
 
 Array = NDArray[np.float64]
 
@@ -157,28 +156,16 @@ def _windows(
 ) -> SpatialBounds:
     """Bounds with the windows of equations 3.15 and 3.16 (or 5.1) put in."""
     bounds = task.bounds
-    node = bounds.node_lower.copy(), bounds.node_upper.copy()
-    angle = bounds.angle_lower.copy(), bounds.angle_upper.copy()
-    first = row_slice(ANGLE_ROWS).start
     last = grid.n_nodes - 1
     postures = ((0, windows.posture_ends), (last // 2, windows.posture_middle),
                 (last, windows.posture_ends))  # fmt: skip
     for when, (row, epsilon) in zip(INSTANTS, postures, strict=True):
-        for name in KEY_JOINTS:
-            value = float(np.interp(duration * row / last, recorded.time, recorded.key[name]))
-            target, column = (
-                (node, first + DEPENDENT.index(name)) if name in DEPENDENT
-                else (angle, LIMITED.index(name))
-            )  # fmt: skip
-            low = max(value - epsilon, target[0][row, column])
-            high = min(value + epsilon, target[1][row, column])
-            if low > high:
-                limits = np.degrees((target[0][row, column], target[1][row, column]))
-                raise TaskError(
-                    f'{name} at the {when} of the lift: {np.degrees(value):.1f} deg is outside '
-                    f'its limits of {limits[0]:.1f} to {limits[1]:.1f} deg'
-                )
-            target[0][row, column], target[1][row, column] = low, high
+        angles = {
+            name: float(np.interp(duration * row / last, recorded.time, recorded.key[name]))
+            for name in KEY_JOINTS
+        }
+        bounds = near_posture(bounds, row, angles, epsilon, when)
+    node = bounds.node_lower.copy(), bounds.node_upper.copy()
     if np.isfinite(windows.ground):
         weight = task.parameters.body_mass * task.parameters.gravity
         columns = slice(row_slice(GROUND_ROWS).start + 1, row_slice(GROUND_ROWS).stop)
@@ -192,6 +179,4 @@ def _windows(
             force = recorded.at(recorded.vertical, duration * part)
             node[0][row, columns] = np.maximum(force - windows.ground, 0.0) / weight
             node[1][row, columns] = (force + windows.ground) / weight
-    return replace(
-        bounds, node_lower=node[0], node_upper=node[1], angle_lower=angle[0], angle_upper=angle[1]
-    )
+    return replace(bounds, node_lower=node[0], node_upper=node[1])

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -112,7 +112,10 @@ class SpatialVerification:
 
         node = narrow(bounds.node_lower, bounds.node_upper, self.node_excess)
         angle = narrow(bounds.angle_lower, bounds.angle_upper, self.angle_excess)
-        return SpatialBounds(*node, *angle, bounds.hand, bounds.box_mass, bounds.duration)
+        return replace(
+            bounds, node_lower=node[0], node_upper=node[1], angle_lower=angle[0],
+            angle_upper=angle[1],
+        )  # fmt: skip
 
 
 def verify(
