@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""The `lift` command: import, play, record, run, report, demo, compare-opensim, predict, study."""
+"""The `lift` command and the parts of it that need no module of their own."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from lifting_bringup import (
+    compare_command,
     emg_command,
     opensim_command,
     planning_command,
@@ -63,6 +64,14 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument(
         '--offline', action='store_true', help='same computation in this process, without ROS'
     )
+    run.add_argument(
+        '--visualize', action='store_true', help='also publish markers, /tf and the URDF'
+    )
+    run.add_argument(
+        '--record-visualization',
+        action='store_true',
+        help='--visualize, and record it in results.mcap',
+    )
     run.set_defaults(handler=_run)
 
     play = commands.add_parser('play', help='play a recording')
@@ -100,6 +109,7 @@ def _parser() -> argparse.ArgumentParser:
     report.add_argument('--output', type=Path, help='HTML file (default: beside the results)')
     report.set_defaults(handler=_report)
 
+    compare_command.add_to(commands)
     opensim_command.add_to(commands)
     emg_command.add_to(commands)
     planning_command.add_to(commands)
@@ -116,6 +126,8 @@ def _demo(options: argparse.Namespace) -> int:
             rate=1.0,
             station='station_1',
             offline=False,
+            visualize=False,
+            record_visualization=False,
         )
     )
 
@@ -129,12 +141,20 @@ def _run(options: argparse.Namespace) -> int:
         results = run_offline(options.bag, output, options.station)
         run = 'offline'
     else:
-        with node_processes(output / 'logs', options.station) as processes:
+        visualize = options.visualize or options.record_visualization
+        with node_processes(output / 'logs', options.station, visualize) as processes:
             # Loads while the nodes do.
             from lifting_bringup.session import RunOptions, run_online
 
             outcome = run_online(
-                RunOptions(options.bag, output, rate=options.rate, station=options.station),
+                RunOptions(
+                    options.bag,
+                    output,
+                    rate=options.rate,
+                    station=options.station,
+                    visualize=visualize,
+                    record_visualization=options.record_visualization,
+                ),
                 processes=processes,
             )
         results = outcome.results

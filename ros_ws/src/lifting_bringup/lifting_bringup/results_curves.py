@@ -114,6 +114,7 @@ def spine_curves(message: Any, start: float) -> SpineCurves:
         block_time(message, start),
         np.asarray(message.compression, np.float64),
         np.asarray(message.anterior_shear, np.float64),
+        np.asarray(message.lateral_shear, np.float64),
         np.asarray(message.status) == 0,
         np.asarray(message.compression_per_degree, np.float64),
         np.asarray(message.anterior_shear_per_degree, np.float64),

@@ -41,7 +41,8 @@ HEADER = Header(
     'made_up.mcap', 'Test of the page; no recording behind it.', True, 12.0, 500.0, 1.0, 2.0,
     'offline', '2026-01-01 12:00', '0.1.0')
 MUSCLES = ('bflh_r', 'bflh_l', 'bfsh_r', 'vaslat_r', 'vaslat_l', 'vasmed_r', 'glmax1_r',
-           'glmed2_l', 'LD_L1_r', 'LD_T7_l', 'MF_m1s_r', 'MF_m5t_3_l', 'LTpT_T1_r', 'LTpL_L5_l')
+           'glmed2_l', 'LD_L1_r', 'LD_T7_l', 'MF_m1s_r', 'MF_m5t_3_l', 'LTpT_T1_r', 'LTpL_L5_l',
+           'EO1_r', 'IO6_l')
 JOINT_NAMES = ('spine', 'shoulder', 'elbow', 'hip', 'knee', 'ankle')
 
 
@@ -67,7 +68,8 @@ def spine(n, compression, shear):
     solved = np.ones(n, bool)
     solved[n // 5:n // 5 + 3] = False
     force = np.linspace(0.9, 0.35, n) * compression + shape(n, 0.1 * compression, 2.0)
-    return SpineCurves(time, force, 0.3 * shear + shape(n, 0.7 * shear), solved,
+    return SpineCurves(time, force, 0.3 * shear + shape(n, 0.7 * shear),
+                       shape(n, -0.05 * shear), solved,
                        np.full(n, 0.004 * shear), np.full(n, compression * 0.0174),
                        'sacral end plate')
 

@@ -216,8 +216,8 @@ class SpineCurves:
 
     Attributes
     ----------
-    time, compression, anterior_shear : array
-        [s], [N].
+    time, compression, anterior_shear, lateral_shear : array
+        [s], [N]; lateral shear is positive where S1 pushes L5 to the left.
     solved : array of bool
         Samples whose solve report is good; the others are drawn as gaps.
     compression_per_degree, anterior_shear_per_degree : array
@@ -229,6 +229,7 @@ class SpineCurves:
     time: Array
     compression: Array
     anterior_shear: Array
+    lateral_shear: Array
     solved: BoolArray
     compression_per_degree: Array
     anterior_shear_per_degree: Array
@@ -236,8 +237,8 @@ class SpineCurves:
 
     def __post_init__(self) -> None:
         """Check the shapes."""
-        for name in ('compression', 'anterior_shear', 'solved', 'compression_per_degree',
-                     'anterior_shear_per_degree'):
+        for name in ('compression', 'anterior_shear', 'lateral_shear', 'solved',
+                     'compression_per_degree', 'anterior_shear_per_degree'):
             check(self, name, (len(self.time),))
 
 
