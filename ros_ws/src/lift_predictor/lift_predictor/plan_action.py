@@ -18,7 +18,8 @@ from lift_predictor import conversions
 from lift_predictor.background import Background
 from lift_predictor.core.exceptions import CancelledError, LiftPredictorError
 from lift_predictor.core.planning.plan_task import DEFAULT_DURATION, PlanTask
-from lift_predictor.core.planning.planner import LiftPlanner, PlannedLift
+from lift_predictor.core.planning.planned_lift import PlannedLift
+from lift_predictor.core.planning.planner import LiftPlanner
 from lift_predictor.core.planning.solve import PlanProgress
 from lift_predictor.core.planning.technique import FREE
 

@@ -16,7 +16,7 @@ from lifting_interfaces.msg import Task as TaskMsg
 
 from injury_monitor.core.limits import LimitSet, limits_for, zone_meaning
 from lift_predictor import conversions as predictor_messages
-from lift_predictor.core.planning.planner import PlannedLift
+from lift_predictor.core.planning.planned_lift import PlannedLift
 from lift_predictor.core.planning.summary import PlanSummary, summarise
 from lift_predictor.core.planning.task_file import TaskFile
 from lifting_bringup.graph_errors import SessionError

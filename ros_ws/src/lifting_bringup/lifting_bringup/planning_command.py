@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from lifting_bringup.graph_errors import SessionError
 
 if TYPE_CHECKING:
-    from lift_predictor.core.planning.planner import PlannedLift
+    from lift_predictor.core.planning.planned_lift import PlannedLift
     from lifting_bringup.planned_results import PlanFiles, SpinePeak
 
 
@@ -93,13 +93,14 @@ def described(planned: PlannedLift, files: PlanFiles) -> list[str]:
     feet = ' (searched)' if task.feet is None else ''
     lines += [
         f'box      {summary.box_mass:.2f} kg{heaviest}, in {summary.duration:.2f} s',
-        f'feet     ankles at forward {summary.ankle:.3f} m{feet}',
-        f'effort   {summary.effort:.4f} s',
+        f'feet     ankles at forward {summary.ankle:.3f} m, left {summary.left:.3f} m, facing '
+        f'{math.degrees(summary.heading):.0f} deg to the left{feet}',
+        f'effort   {summary.effort:.4f} s'
+        + (' (in space: each limb counts)' if planned.in_space else ''),
         f'posture  Stoop-Squat-Index {summary.technique_index:.0f} at the start '
-        f'(asked for: {task.technique})'
-        if not task.lies_aside
-        else 'posture  in space: the box lies beside the sagittal plane',
-        'joint torques nearest to their limits [N m]; both limbs in the sagittal plane:',
+        f'(asked for: {task.technique})',
+        'joint torques nearest to their limits [N m]'
+        + (':' if planned.in_space else '; both limbs:'),
     ]
     lines += [
         f'  {peak.joint:<17} {peak.torque:8.1f} of {peak.limit:8.1f}  {100 * peak.share:5.1f} %  '
@@ -107,13 +108,11 @@ def described(planned: PlannedLift, files: PlanFiles) -> list[str]:
         for peak in sorted(summary.peaks, key=lambda peak: -peak.share)[:SHOWN]
     ]
     lines += [
-        f'limits touched: {"; ".join(_grouped(summary.binding)) or "none"}'
-        if not task.lies_aside
-        else 'limits touched: not listed for lifts in space',
+        f'limits touched: {"; ".join(_grouped(summary.binding)) or "none"}',
         f'ground reaction: up to {summary.peak_vertical_force:.0f} N vertical, '
         f'{summary.largest_horizontal_force:.0f} N horizontal',
-        'box path (s: forward, up m): '
-        + ', '.join(f'{t:.2f}: {x:.2f} {z:.2f}' for t, x, z in summary.box_path[::2]),
+        'box path (s: forward, left, up m): '
+        + ', '.join(f'{t:.2f}: {x:.2f} {y:.2f} {z:.2f}' for t, x, y, z in summary.box_path[::2]),
     ]
     if files.spine is not None:
         lines += _spine(files.spine)

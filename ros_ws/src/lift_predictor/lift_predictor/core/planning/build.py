@@ -13,7 +13,12 @@ from numpy.typing import NDArray
 from lift_predictor.core.bspline import RestToRestSpline
 from lift_predictor.core.exceptions import PlanError
 from lift_predictor.core.planning.plan_task import LATERAL_TOLERANCE, PlanTask
-from lift_predictor.core.planning.postures import Posture, find_postures
+from lift_predictor.core.planning.postures import (
+    HIGH_GUESSES,
+    LOW_GUESSES,
+    Posture,
+    find_postures,
+)
 from lift_predictor.core.planning.technique import FREE, technique
 from lift_predictor.core.sagittal.grid import LiftBounds
 from lift_predictor.core.sagittal.parameters import N_JOINTS, LiftParameters
@@ -25,8 +30,6 @@ from lift_predictor.core.solvers.optimum import Start
 
 Array = NDArray[np.float64]
 
-LOW_GUESSES: Final = ('semi-squat', 'squat', 'stoop')
-HIGH_GUESSES: Final = ('upright, elbow bent', 'upright, arm forward')
 SAME_POSTURE: Final = 0.02
 """Largest difference of joint angles up to which two postures are one [rad]."""
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from lift_predictor.core.exceptions import UnreachableError
 from lift_predictor.core.maximum_weight import Weighting
-from lift_predictor.core.planning.plan_task import PlanTask
+from lift_predictor.core.planning.plan_task import FARTHEST, NEAREST, PlanTask
 from lift_predictor.core.planning.solve import (
     Listener,
     PlanProgress,
@@ -21,10 +21,6 @@ from lift_predictor.core.planning.solve import (
 )
 from lift_predictor.core.predictor import LiftPredictor
 
-NEAREST: Final = 0.25
-FARTHEST: Final = 0.63
-"""Distances of the hands from the middle of the ankles between which the feet are placed, at the
-nearer end of the lift [m]: the range of H in the revised NIOSH lifting equation (Waters 1993)."""
 DISTANCES: Final = 5
 """Distances that are tried first, evenly spread."""
 HALVINGS: Final = 3
@@ -43,11 +39,17 @@ class Placement:
         Effort [s], or minus the mass [kg] where it is maximised; infinite: no lift from there.
     message : str
         Of the solve, or why there was none.
+    left : float
+        Middle of the ankles, to the left [m].
+    heading : float
+        Direction of the feet, 0: forward [rad]; another one in space only.
     """
 
     ankle: float
     value: float
     message: str
+    left: float = 0.0
+    heading: float = 0.0
 
 
 def place_feet(
@@ -65,7 +67,7 @@ def place_feet(
     UnreachableError
         From no place can the box be held at both ends; carries the reason at the best distance.
     """
-    near = min(task.start[0], task.end[0]) - task.box_from_grip[0]
+    near = task.nearer
     tried: dict[float, Placement] = {}
     best: SolvedPlan | None = None
     kept: SolvedPlan | None = None
@@ -80,13 +82,15 @@ def place_feet(
         try:
             first = () if best is None else (best.start(),)
             solved = solve_plan(predictor, task, ankle, 1, weighting, first)
-            tried[ankle] = Placement(ankle, solved.value, solved.prediction.report.message)
+            tried[ankle] = Placement(
+                ankle, solved.value, solved.prediction.report.message, task.lateral
+            )
             if np.isfinite(solved.value) and (best is None or solved.value < best.value):
                 best = solved
             kept = best or solved
         except UnreachableError as error:
             reach_error = error
-            tried[ankle] = Placement(ankle, float('inf'), str(error))
+            tried[ankle] = Placement(ankle, float('inf'), str(error), task.lateral)
         if listener is not None:
             value = finite_best([p.value for p in tried.values()])
             listener(PlanProgress('feet', len(tried), total, value))

@@ -22,6 +22,11 @@ LATERAL_TOLERANCE: Final = 0.15
 """How far a place of the box may lie beside the sagittal plane, seen from the ankles [rad]: the
 same 0.15 rad up to which a recorded lift counts as sagittal (epsilon of equation 4.8)."""
 
+NEAREST: Final = 0.25
+FARTHEST: Final = 0.63
+"""Distances of the hands from the middle of the ankles between which free feet are placed, at the
+nearer end of the lift [m]: the range of H in the revised NIOSH lifting equation (Waters 1993)."""
+
 Point = tuple[float, float, float]
 
 
@@ -119,8 +124,17 @@ class PlanTask:
 
     @property
     def lies_aside(self) -> bool:
-        """Whether a place of the box is out of the sagittal plane of feet that are given."""
-        return self.feet is not None and self.asymmetry(self.feet[0]) > LATERAL_TOLERANCE
+        """Whether a place of the box is out of the sagittal plane.
+
+        Where the feet are free: of feet that face forward behind the start, as near as they may.
+        """
+        ankle = self.nearer - NEAREST if self.feet is None else self.feet[0]
+        return self.asymmetry(ankle) > LATERAL_TOLERANCE
+
+    @property
+    def nearer(self) -> float:
+        """How far forward the hands are at the nearer place [m]."""
+        return min(self.start[0], self.end[0]) - self.box_from_grip[0]
 
     def asymmetry(self, ankle: float) -> float:
         """Largest angle of a place of the box out of the sagittal plane [rad].

@@ -4,8 +4,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final
+from dataclasses import replace
+from typing import Final
 
 from human_model.errors import HumanModelError
 from human_model.report import SolveReport, SolveStatus
@@ -17,63 +17,15 @@ from lift_predictor.core.planning.build import build_plan
 from lift_predictor.core.planning.feet import Placement, place_feet
 from lift_predictor.core.planning.nearest import nearest_plan
 from lift_predictor.core.planning.plan_task import PlanTask
+from lift_predictor.core.planning.planned_lift import PlannedLift, SagittalPlan
 from lift_predictor.core.planning.solve import Listener, SolvedPlan, solve_plan
 from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.sagittal.prediction import PredictedLift2D
-
-if TYPE_CHECKING:
-    from lift_predictor.core.spatial.prediction import PredictedLift3D
 
 STARTS: Final = 4
 """Made-up initial guesses for the lift itself."""
 PROBES: Final = 2
 """Made-up initial guesses for each place on the way to the nearest lift that can be done."""
-
-
-@dataclass(frozen=True, eq=False)
-class PlannedLift:
-    """A planned lift and how it was found.
-
-    Attributes
-    ----------
-    subject : Subject
-        Who lifts.
-    task : PlanTask
-        What was asked for.
-    prediction : PredictedLift2D or PredictedLift3D
-        The lift; its report says whether there is one. In space where the box lies aside.
-    ankle : float
-        Middle of the ankles, forward [m]; NaN where none was found or the task was refused.
-    index : float
-        Stoop-Squat-Index of the first posture; NaN without a lift, or where C7 is not lowered.
-    placements : tuple of Placement
-        Places that were tried, if the feet were free.
-    binding : tuple of str
-        Limits that the lift touches, the one that costs most first; sagittal plans only.
-    effort : float
-        Effort of a lift in space (first term of equation 3.9) [s]; otherwise NaN.
-    """
-
-    subject: Subject
-    task: PlanTask
-    prediction: PredictedLift2D | PredictedLift3D
-    ankle: float
-    index: float
-    placements: tuple[Placement, ...]
-    binding: tuple[str, ...]
-    effort: float = float('nan')
-
-    @property
-    def report(self) -> SolveReport:
-        """Report of the solve; status 0: good data."""
-        return self.prediction.report
-
-
-@dataclass(frozen=True, eq=False)
-class SagittalPlan(PlannedLift):
-    """A planned lift in the sagittal plane."""
-
-    prediction: PredictedLift2D
 
 
 class LiftPlanner:
@@ -118,12 +70,18 @@ class LiftPlanner:
         PlannedLift
             Its report says whether there is a lift, and otherwise why not: out of reach, too heavy
             (the limit that breaks first is named, and the nearest lift that can be done is in
-            `prediction.nearest`), not sagittal.
+            `prediction.nearest`), or not sagittal where the predictor's dimension is '2d'.
         """
         weights = weighting or self.weighting
-        planned = self._plan(subject, task, listener, weights)
+        dimension = self.predictor.options.dimension
+        if dimension == '3d' or (dimension == 'auto' and task.lies_aside):
+            # Sagittal plans, which are most, need not load it.
+            from lift_predictor.core.planning.space.planner import plan_in_space
+
+            return plan_in_space(self.predictor, subject, task, weights, listener)
+        planned = self._sagittal(subject, task, listener, weights)
         failed = planned.prediction
-        if failed.report.status not in HOPELESS or not isinstance(failed, PredictedLift2D):
+        if failed.report.status not in HOPELESS:
             return planned
         nearest: NearestLift[PredictedLift2D] | None = None
         if failed.report.status is not SolveStatus.PREDICTOR_UNREACHABLE and task.box_mass:
@@ -143,24 +101,6 @@ class LiftPlanner:
         plan = build_plan(self.predictor.person, task, ankle)
         starts = plan.starts(self.predictor.programme.grid.spline, STARTS)
         return self.predictor.lighter_lift(plan.task, starts)
-
-    def _plan(
-        self, subject: Subject, task: PlanTask, listener: Listener | None, weights: Weighting
-    ) -> PlannedLift:
-        if task.feet is None or not task.lies_aside:
-            return self._sagittal(subject, task, listener, weights)
-        # Sagittal plans, which are most, need not load it.
-        from lift_predictor.core.planning.aside import solve_aside
-
-        try:
-            self.predictor.configure(subject)
-            solved = solve_aside(self.predictor, task, weights, listener)
-        except (TaskError, UnreachableError, HumanModelError) as error:
-            return _refused(subject, task, error)
-        nan = float('nan')
-        return PlannedLift(
-            subject, task, solved.prediction, task.feet[0], nan, (), (), solved.effort
-        )
 
     def _sagittal(
         self,
@@ -204,6 +144,8 @@ def _planned(
         task=task,
         prediction=solved.prediction,
         ankle=float(solved.plan.task.parameters.ankle[0]),
+        left=task.lateral,
+        heading=0.0,
         index=solved.index,
         placements=placements,
         binding=solved.binding,
@@ -220,4 +162,4 @@ def _refused(subject: Subject, task: PlanTask, error: Exception) -> SagittalPlan
     prediction = PredictedLift2D.failed(
         task.name, mass, task.duration, SolveReport(status, str(error))
     )
-    return SagittalPlan(subject, task, prediction, nan, nan, (), ())
+    return SagittalPlan(subject, task, prediction, nan, nan, nan, nan, (), ())

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from lift_predictor.core.exceptions import UnreachableError
 from lift_predictor.core.least_squares import minimise
-from lift_predictor.core.planning.technique import Technique, lowering
+from lift_predictor.core.planning.technique import Technique, lowering, technique_range
 from lift_predictor.core.sagittal.kinematics import REACHED, chain_positions
 from lift_predictor.core.sagittal.parameters import JOINTS, LiftParameters
 from lift_predictor.core.sagittal.person import Person
@@ -27,13 +27,12 @@ GUESSES: Final[dict[str, tuple[float, ...]]] = {
     'upright, arm forward': (0.0, 70.0, 20.0, 5.0, 5.0, 0.0),
 }
 """Where the search for a posture begins, in the order of `JOINTS` [deg]: guesses."""
+LOW_GUESSES: Final = ('semi-squat', 'squat', 'stoop')
+HIGH_GUESSES: Final = ('upright, elbow bent', 'upright, arm forward')
 
 CLOSE: Final = 1e-3
 """Depth of the box in the body, or distance of the centre of mass from the feet, that passes [m]:
 the tolerance of the dense check."""
-_INDEX_INSIDE: Final = 5.0
-"""Distance to the ends of a technique's index range that the search aims at, if they are so far
-apart; a numerical margin, as the optimiser may move the posture afterwards."""
 _POSTURE_WEIGHT: Final = 1e-3
 """Weight of the distance from the guess [m/rad]: it only breaks ties."""
 
@@ -95,10 +94,7 @@ def find_posture(
     lower, upper = person.angle_lower, person.angle_upper
     reference = np.clip(np.radians(GUESSES[guess]), lower, upper)
     rear, front = parameters.support
-    index = None
-    if technique is not None and technique.lower is not None and technique.upper is not None:
-        inside = min(_INDEX_INSIDE, 0.4 * (technique.upper - technique.lower))
-        index = (technique.lower + inside, technique.upper - inside)
+    index = None if technique is None else technique_range(technique)
 
     def wrong(q: Array) -> Array:
         state = chain_positions(q, parameters)

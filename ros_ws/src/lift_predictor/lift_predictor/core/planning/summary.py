@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from lift_predictor.core.planning.planner import PlannedLift
+from lift_predictor.core.planning.planned_lift import PlannedLift
 
 
 @dataclass(frozen=True)
@@ -46,15 +46,15 @@ class PlanSummary:
         [kg], integral of the squared normalised torques [s], [s].
     technique_index : float
         Stoop-Squat-Index of the first posture; NaN where C7 is not lowered.
-    ankle : float
-        Middle of the ankles, forward [m].
+    ankle, left, heading : float
+        Middle of the ankles, forward and to the left [m]; direction of the feet [rad].
     peaks : tuple of TorquePeak
         One a joint, as the prediction orders them.
     binding : tuple of str
         Limits the lift touches.
     peak_vertical_force, largest_horizontal_force : float
         Ground reaction of both feet [N].
-    box_path : tuple of (time, forward, up)
+    box_path : tuple of (time, forward, left, up)
         Box centre at eleven even instants [s], [m].
     """
 
@@ -63,11 +63,13 @@ class PlanSummary:
     duration: float
     technique_index: float
     ankle: float
+    left: float
+    heading: float
     peaks: tuple[TorquePeak, ...]
     binding: tuple[str, ...]
     peak_vertical_force: float
     largest_horizontal_force: float
-    box_path: tuple[tuple[float, float, float], ...]
+    box_path: tuple[tuple[float, float, float, float], ...]
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for JSON."""
@@ -97,11 +99,15 @@ def summarise(planned: PlannedLift) -> PlanSummary | None:
         duration=prediction.duration,
         technique_index=planned.index,
         ankle=planned.ankle,
+        left=planned.left,
+        heading=planned.heading,
         peaks=tuple(_peak(planned, time, j) for j in range(len(prediction.torque_names))),
         binding=planned.binding,
         peak_vertical_force=float(ground[:, 2].max()),
         largest_horizontal_force=float(np.abs(ground[:, 0]).max()),
-        box_path=tuple((float(time[i]), float(box[i, 0]), float(box[i, 2])) for i in rows),
+        box_path=tuple(
+            (float(time[i]), float(box[i, 0]), float(box[i, 1]), float(box[i, 2])) for i in rows
+        ),
     )
 
 

@@ -27,6 +27,10 @@ Array = NDArray[np.float64]
 
 FREE: Final = 'free'
 
+INDEX_INSIDE: Final = 5.0
+"""Distance to the ends of a technique's index range that the search for a posture aims at, if they
+are so far apart; a numerical margin, as the optimiser may move the posture afterwards."""
+
 
 @dataclass(frozen=True)
 class Technique:
@@ -70,6 +74,14 @@ def technique(name: str) -> Technique:
     if name not in known:
         raise PlanError(f'task.technique: {name!r} is not one of {", ".join(known)}')
     return known[name]
+
+
+def technique_range(wanted: Technique) -> tuple[float, float] | None:
+    """Range of the index that the search for a posture aims at; None: any."""
+    if wanted.lower is None or wanted.upper is None:
+        return None
+    inside = min(INDEX_INSIDE, 0.4 * (wanted.upper - wanted.lower))
+    return wanted.lower + inside, wanted.upper - inside
 
 
 def lowering(q: Array, person: Person, parameters: LiftParameters) -> tuple[Array, Array]:

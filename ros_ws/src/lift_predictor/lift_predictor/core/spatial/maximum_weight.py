@@ -16,7 +16,7 @@ from lift_predictor.core.nearest_lift import TIE_BREAK
 from lift_predictor.core.spatial.evaluation import evaluate, sample
 from lift_predictor.core.spatial.grid import WEIGHT_OFFSET
 from lift_predictor.core.spatial.prediction import PredictedLift3D
-from lift_predictor.core.spatial.predictor import SpatialPredictor
+from lift_predictor.core.spatial.predictor import Progress, SpatialPredictor
 from lift_predictor.core.spatial.starts import SpatialStart
 from lift_predictor.core.spatial.task import SpatialTask
 
@@ -62,6 +62,7 @@ def maximum_weight(
     task: SpatialTask,
     starts: Sequence[SpatialStart],
     weighting: Weighting | None = None,
+    progress: Progress | None = None,
 ) -> SpatialMaximum:
     """Find the largest weight with which a task can be done, and that lift.
 
@@ -78,13 +79,15 @@ def maximum_weight(
         Initial guesses, the most promising first.
     weighting : Weighting, optional
         Of effort and weight; (0.15, 0.85) if omitted.
+    progress : callable, optional
+        Told after each run; what it raises ends the work there.
     """
     weighting = weighting or Weighting()
     pure = _with_objective(task, (TIE_BREAK, 1.0))
     far = tuple(
         replace(start, name=f'{start.name}, far', barrier=FAR) for start in starts
     )
-    heaviest = predictor.solve_task(pure, (*starts, *far))
+    heaviest = predictor.solve_task(pure, (*starts, *far), progress)
     first = _result(predictor, pure, Weighting(0.0, 1.0), heaviest, None)
     scale = first.normalisation
     if scale is None or weighting == first.weighting:
@@ -93,7 +96,7 @@ def maximum_weight(
         task, (weighting.effort / scale.effort, weighting.box / scale.log_weight)
     )
     near = SpatialStart('heaviest box', heaviest.control, heaviest.box_mass, heaviest.duration)
-    best = predictor.solve_task(weighted, (near, *far))
+    best = predictor.solve_task(weighted, (near, *far), progress)
     return _result(predictor, weighted, weighting, best, scale)
 
 

@@ -11,7 +11,8 @@ from functools import cache
 from typing import Any, Final
 
 from human_model.report import SolveStatus
-from lift_predictor.core.planning.planner import LiftPlanner, PlannedLift
+from lift_predictor.core.planning.planned_lift import PlannedLift
+from lift_predictor.core.planning.planner import LiftPlanner
 from lift_predictor.core.planning.summary import summarise
 from lift_predictor.core.study.cases import Case
 

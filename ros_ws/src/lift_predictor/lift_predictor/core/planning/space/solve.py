@@ -1,0 +1,155 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Solves a plan in space for feet at one place: given mass or the largest, in a technique."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from lift_predictor.core.exceptions import PlanError
+from lift_predictor.core.maximum_weight import Weighting
+from lift_predictor.core.nearest_lift import NearestLift
+from lift_predictor.core.planning.plan_task import PlanTask
+from lift_predictor.core.planning.solve import Listener, PlanProgress
+from lift_predictor.core.planning.space.task import Feet, SpacePlan, place_plan
+from lift_predictor.core.predictor import LiftPredictor
+from lift_predictor.core.solvers.solution import Solution
+from lift_predictor.core.spatial.evaluation import lowering
+from lift_predictor.core.spatial.feasibility import binding_limits, lighter_lift
+from lift_predictor.core.spatial.maximum_weight import maximum_weight, total_effort
+from lift_predictor.core.spatial.prediction import PredictedLift3D
+from lift_predictor.core.spatial.predictor import SpatialPredictor
+from lift_predictor.core.spatial.starts import SpatialStart
+
+
+@dataclass(frozen=True, eq=False)
+class SolvedInSpace:
+    """Answer of the spatial programme for feet at one place.
+
+    Attributes
+    ----------
+    plan : SpacePlan
+        What was solved.
+    prediction : PredictedLift3D
+        The lift; its report says whether there is one.
+    effort : float
+        First term of equation 3.9 [s]; NaN without a lift.
+    index : float
+        Stoop-Squat-Index of the first posture; NaN without a lift, or where C7 is not lowered.
+    binding : tuple of str
+        Limits the lift touches, the one that costs most first.
+    value : float
+        Effort [s], or minus the mass [kg] where the largest was asked for; infinite: no lift.
+    """
+
+    plan: SpacePlan
+    prediction: PredictedLift3D
+    effort: float
+    index: float
+    binding: tuple[str, ...]
+    value: float
+
+    def start(self) -> SpatialStart:
+        """Use the motion as an initial guess."""
+        found = self.prediction
+        return SpatialStart('neighbour', found.control, found.box_mass, found.duration)
+
+
+def solve_in_space(
+    predictor: LiftPredictor,
+    task: PlanTask,
+    feet: Feet,
+    weighting: Weighting,
+    first: Sequence[SpatialStart] = (),
+    n_starts: int | None = None,
+    warm: Solution | None = None,
+    listener: Listener | None = None,
+) -> SolvedInSpace:
+    """Plan with the feet at a place.
+
+    Parameters
+    ----------
+    predictor : LiftPredictor
+        With the subject configured.
+    task : PlanTask
+        What is lifted.
+    feet : Feet
+        Where they stand.
+    weighting : Weighting
+        Of effort and weight, where the largest mass is asked for.
+    first : sequence of SpatialStart
+        Initial guesses tried before the made-up ones.
+    n_starts : int, optional
+        Made-up initial guesses at most; all if omitted.
+    warm : Solution, optional
+        Of a neighbour, where the mass is given.
+    listener : callable, optional
+        Told after each run.
+
+    Raises
+    ------
+    PlanError
+        No subject was configured.
+    TaskError
+        The box would have to be carried round the person.
+    UnreachableError
+        A place of the box is out of reach.
+    """
+
+    def tell(done: int, total: int, best: float) -> None:
+        if listener is not None:
+            listener(PlanProgress('lift', done, total, best))
+
+    spatial = predictor.spatial()
+    if spatial.person is None:
+        raise PlanError('subject: none was configured before the first plan')
+    plan = place_plan(spatial, spatial.person, task, feet)
+    starts = list(first)
+    if n_starts != 0:
+        starts += plan.starts(spatial)[:n_starts]
+    if task.box_mass is None:
+        heaviest = maximum_weight(spatial, plan.task, starts, weighting, tell)
+        prediction, effort, value = heaviest.prediction, heaviest.effort, -heaviest.mass
+    else:
+        prediction = spatial.solve_task(plan.task, starts, tell, warm=warm)
+        effort = value = float('nan')
+        if prediction.report.ok:
+            effort = value = total_effort(spatial, plan.task, prediction)
+    if not prediction.report.ok:
+        nan = float('nan')
+        return SolvedInSpace(plan, prediction, nan, nan, (), float('inf'))
+    limits = binding_limits(plan.task, spatial.grid, prediction.optima[0].solution)
+    return SolvedInSpace(
+        plan,
+        prediction,
+        effort,
+        first_index(spatial, plan, prediction),
+        tuple(name for name, _ in limits),
+        value,
+    )
+
+
+def first_index(
+    spatial: SpatialPredictor, plan: SpacePlan, prediction: PredictedLift3D
+) -> float:
+    """Stoop-Squat-Index of the first posture; NaN where C7 is not lowered."""
+    hips, c7 = lowering(spatial.library, prediction.control[:1], plan.task.parameters)
+    return 100.0 * (1.0 - float(hips[0] / c7[0])) if c7[0] > 0.0 else float('nan')
+
+
+def lighter_in_space(
+    predictor: LiftPredictor, task: PlanTask, feet: Feet
+) -> NearestLift[PredictedLift3D] | None:
+    """Find the plan's lift with the largest mass up to the one asked for; None: none."""
+    spatial = predictor.spatial()
+    if spatial.person is None:
+        raise PlanError('subject: none was configured before the first plan')
+    plan = place_plan(spatial, spatial.person, task, feet)
+    # What is too heavy to be held gives no start; empty hands do.
+    empty = np.zeros(2)
+    bounds = replace(plan.task.bounds, box_mass=empty)
+    light = replace(plan, task=replace(plan.task, bounds=bounds))
+    return lighter_lift(spatial.solve_task, plan.task, light.starts(spatial), spatial.grid)
