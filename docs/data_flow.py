@@ -9,7 +9,7 @@ from html import escape
 from pathlib import Path
 
 FIGURE = Path(__file__).parent / 'figures' / 'data_flow.svg'
-WIDTH, HEIGHT = 980, 640
+WIDTH, HEIGHT = 980, 740
 
 # Colours of the page are taken over where the viewer says whether it is light or dark.
 STYLE = """
@@ -107,6 +107,9 @@ BOXES = (
     Box(360, 476, 260, 64, 'node', 'injury_monitor', ('limits, alarms, lifting equation',)),
     Box(60, 570, 260, 50, 'end', 'lift run', ('live view, report.html, results.mcap',)),
     Box(660, 570, 300, 50, 'end', 'the plant', ('operator acknowledges; alarm journal',)),
+    Box(60, 660, 260, 64, 'node', 'lifting_visualization',
+        ('person, loads, optimal lift to see',)),
+    Box(660, 667, 300, 50, 'end', 'RViz, Foxglove', ('or any other tool of ROS 2',)),
 )
 EDGES = (
     Edge(((196, 49), (298, 49))),
@@ -123,6 +126,8 @@ EDGES = (
     Edge(((810, 382), (810, 410))),
     Edge(((580, 540), (580, 595), (658, 595))),
     Edge(((470, 540), (470, 595), (322, 595)), soft=True),
+    Edge(((470, 595), (470, 674), (322, 674)), soft=True),
+    Edge(((320, 706), (658, 706))),
 )
 LABELS = (
     Label(247, 41, ('lift import',), 'what', 'middle'),
@@ -148,6 +153,8 @@ LABELS = (
     Label(770, 428, ('joint_reactions', 'l5_s1/reaction')),
     Label(590, 560, ('alarms, risk_assessment',)),
     Label(332, 562, ('results of all nodes',), 'what'),
+    Label(490, 698, ('visualization, robot_description',), 'topic', 'middle'),
+    Label(490, 722, ('/tf, /tf_static',), 'topic', 'middle'),
 )
 
 
@@ -157,7 +164,7 @@ def draw() -> str:
     return '\n'.join([
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" '
         f'width="{WIDTH}" height="{HEIGHT}" role="img">',
-        '<title>Data flow: recording, player, four nodes, results</title>',
+        '<title>Data flow: recording, player, five nodes, results</title>',
         f'<style>{STYLE}</style>',
         '<defs><marker id="head" viewBox="0 0 10 10" refX="9" refY="5" markerWidth="8" '
         'markerHeight="8" orient="auto"><path class="head" d="M0,0 L10,5 L0,10 z"/></marker>'

@@ -28,6 +28,8 @@ SCRIPTS = ROOT / 'scripts'
 REQUIREMENTS = ROOT / 'requirements'
 SOURCES = ROOT / 'ros_ws' / 'src'
 INTERFACES = SOURCES / 'lifting_interfaces'
+#: The message of /tf, which PyPI lacks and a full ROS 2 has.
+TF_MESSAGE = SCRIPTS / 'interfaces_for_wheels' / 'tf2_msgs'
 RUNTIME_LOCKS = [REQUIREMENTS / f'{name}.txt' for name in ('runtime', 'build', 'model')]
 DEV_LOCK = REQUIREMENTS / 'dev.txt'
 
@@ -113,6 +115,23 @@ def build_interfaces() -> None:
     run(VENV / 'bin' / 'python', '-c', 'import rclpy, lifting_interfaces.msg')
 
 
+def build_tf_message() -> None:
+    """Build the message of /tf and try it."""
+    check_compilers()
+    say('building the message of /tf (ten seconds)')
+    interfaces.build(TF_MESSAGE, ROOT / 'build' / TF_MESSAGE.name, VENV)
+    run(VENV / 'bin' / 'python', '-c', 'import tf2_msgs.msg')
+
+
+def interface_digest(package: Path, runtime: str) -> str:
+    """Return the digest of all that an interface package is built from."""
+    files = [path for folder in ('msg', 'srv', 'action')
+             for path in (package / folder).glob('*')]
+    files += [package / 'CMakeLists.txt', package / 'package.xml',
+              SCRIPTS / 'interfaces.py', REQUIREMENTS / 'build.txt']
+    return digest(files, runtime)
+
+
 def python_packages() -> list[Path]:
     """Return the folders of the ament_python packages."""
     return sorted(path.parent for path in SOURCES.glob('*/setup.py'))
@@ -177,16 +196,13 @@ def set_up(dev: bool) -> None:
         version = venv_version()
     place.write()
     runtime = digest(RUNTIME_LOCKS, version)
-    interface_files = [path for folder in ('msg', 'srv', 'action')
-                       for path in (INTERFACES / folder).glob('*')]
-    interface_files += [INTERFACES / 'CMakeLists.txt', INTERFACES / 'package.xml',
-                        SCRIPTS / 'interfaces.py', REQUIREMENTS / 'build.txt']
     names = [path.name for path in python_packages()]
     numba = digest(compiled_functions.numba_sources(SOURCES), runtime)
     programme = digest(compiled_functions.programme_sources(SOURCES), numba)
     steps = [
         ('runtime', runtime, install_runtime),
-        ('interfaces', digest(interface_files, runtime), build_interfaces),
+        ('interfaces', interface_digest(INTERFACES, runtime), build_interfaces),
+        ('tf2_msgs', interface_digest(TF_MESSAGE, runtime), build_tf_message),
         ('workspace', digest([Path(__file__)], runtime, *names), install_workspace),
         ('numba', numba, drop_compiled_functions),
     ]

@@ -19,7 +19,8 @@ import yaml
 SOURCE = Path(__file__).parents[1] / 'ros_ws' / 'src'
 LAUNCH_FILES = sorted(SOURCE.glob('*/launch/*.launch.py'))
 PARAMETER_FILES = sorted(SOURCE.glob('*/config/*.yaml'))
-NODES = ('motion_tracker', 'lift_predictor', 'muscle_analyzer', 'injury_monitor')
+NODES = ('motion_tracker', 'lift_predictor', 'muscle_analyzer', 'injury_monitor',
+         'lifting_visualization')
 
 
 @pytest.fixture

@@ -44,7 +44,8 @@ ROSDEP_KEYS = {
 WITHOUT_ROSDEP_KEY = {'casadi', 'distributed', 'ezc3d', 'pyarrow'}
 STANDARD_LIBRARY = sys.stdlib_module_names | {'compression'}  # compression: from Python 3.14
 # Started as processes by the launch files, or read as installed data; not imported.
-STARTED_BY_BRINGUP = {'motion_tracker', 'lift_predictor', 'muscle_analyzer', 'injury_monitor'}
+STARTED_BY_BRINGUP = {'motion_tracker', 'lift_predictor', 'muscle_analyzer', 'injury_monitor',
+                      'lifting_visualization'}
 
 
 def project_files(suffixes: set[str]) -> Iterator[Path]:
@@ -99,7 +100,8 @@ def imported_modules(package: Path) -> set[str]:
 
 def test_workspace_has_the_packages_of_the_graph() -> None:
     assert {'lifting_interfaces', 'human_model', 'motion_tracker', 'lift_predictor',
-                   'muscle_analyzer', 'injury_monitor', 'lifting_bringup'} <= OWN
+            'muscle_analyzer', 'injury_monitor', 'lifting_visualization',
+            'lifting_bringup'} <= OWN
 
 
 @pytest.mark.parametrize('package', PACKAGES, ids=lambda path: path.name)

@@ -15,13 +15,15 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 SOURCES = ROOT / 'ros_ws' / 'src'
-NODES = ('motion_tracker', 'lift_predictor', 'muscle_analyzer', 'injury_monitor')
+NODES = ('motion_tracker', 'lift_predictor', 'muscle_analyzer', 'injury_monitor',
+         'lifting_visualization')
 README = (ROOT / 'README.md').read_text(encoding='utf-8')
 DOCUMENTS = sorted(
     path for path in (*ROOT.glob('*.md'), *ROOT.glob('docs/*.md'), *ROOT.glob('bags/*.md'),
                       *SOURCES.glob('*/*.md'))
 )
-QUALITIES = {'PLATES': 'plates', 'FRAMES': 'frames', 'LATCHED': 'latched', 'RESULTS': 'results'}
+QUALITIES = {'PLATES': 'plates', 'FRAMES': 'frames', 'LATCHED': 'latched', 'RESULTS': 'results',
+             'VIEW': 'view', 'TRANSFORMS': 'transforms'}
 #: Values of the variable in a topic's name.
 VARIABLES = {'side': ('right', 'left')}
 

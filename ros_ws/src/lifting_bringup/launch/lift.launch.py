@@ -3,6 +3,7 @@
 """Start the graph of one station: `ros2 launch lifting_bringup lift.launch.py station:=cell_3`."""
 
 from launch.actions import DeclareLaunchArgument, EmitEvent, RegisterEventHandler
+from launch.conditions import IfCondition
 from launch.event_handlers import OnProcessStart
 from launch.events import matches_action
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
@@ -17,7 +18,7 @@ from launch import LaunchDescription
 NODES = ('muscle_analyzer', 'lift_predictor', 'motion_tracker', 'injury_monitor')
 
 
-def managed_node(name: str) -> list:
+def managed_node(name: str, condition: IfCondition | None = None) -> list:
     """Return a lifecycle node and the handlers that configure and activate it."""
     node = LifecycleNode(
         package=name,
@@ -29,6 +30,7 @@ def managed_node(name: str) -> list:
             {'use_sim_time': LaunchConfiguration('use_sim_time')},
         ],
         output='screen',
+        condition=condition,
     )
 
     def change(transition: int) -> EmitEvent:
@@ -65,6 +67,13 @@ def generate_launch_description() -> LaunchDescription:
             default_value='false',
             description='Follow /clock (true when a bag is played)',
         ),
+        DeclareLaunchArgument(
+            'visualization',
+            default_value='true',
+            description='Also publish markers, /tf and the URDF of the person',
+        ),
     ]
     entities = [entity for name in NODES for entity in managed_node(name)]
+    shown = IfCondition(LaunchConfiguration('visualization'))
+    entities += managed_node('lifting_visualization', shown)
     return LaunchDescription([*arguments, *entities])

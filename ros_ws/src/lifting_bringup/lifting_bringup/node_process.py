@@ -18,6 +18,9 @@ from lifting_bringup.graph_errors import NodeDiedError
 #: Order of start: what computes longest before it is ready comes first.
 NODES = ('muscle_analyzer', 'lift_predictor', 'motion_tracker', 'injury_monitor')
 
+#: Shows what the others publish; started where somebody looks.
+VISUALIZATION = 'lifting_visualization'
+
 #: Parameters of the nodes of a graph that plays a recording. A stream that the recording has will
 #: come, however busy the machine is: the tracker waits for it longer than for a live one.
 PARAMETERS: dict[str, dict[str, object]] = {'motion_tracker': {'wait': 60.0}}
@@ -145,7 +148,9 @@ def start_module(
 
 
 @contextmanager
-def node_processes(log_folder: Path, station: str) -> Iterator[list[NodeProcess]]:
+def node_processes(
+    log_folder: Path, station: str, visualize: bool = False
+) -> Iterator[list[NodeProcess]]:
     """Start all nodes of a graph, which load their models side by side; end them at the end.
 
     Needs nothing of ROS, so that a command can do it before it loads what it needs itself.
@@ -156,6 +161,8 @@ def node_processes(log_folder: Path, station: str) -> Iterator[list[NodeProcess]
         Where the nodes' output goes.
     station : str
         Namespace of the graph.
+    visualize : bool
+        Also start the node that draws for RViz and Foxglove.
 
     Yields
     ------
@@ -163,7 +170,7 @@ def node_processes(log_folder: Path, station: str) -> Iterator[list[NodeProcess]
     """
     processes: list[NodeProcess] = []
     try:
-        for name in NODES:
+        for name in (*NODES, VISUALIZATION) if visualize else NODES:
             module = f'{name}.{name}_node'
             values = PARAMETERS.get(name)
             processes.append(start_module(name, module, log_folder, station, parameters=values))

@@ -49,6 +49,9 @@ RESULT_TOPICS = (
     'alarms',
 )
 
+#: What the pictures are made of, recorded where it is asked for.
+VISUALIZATION_TOPICS = ('robot_description', 'visualization', '/tf', '/tf_static')
+
 PLATES = ('force_plates/right/wrench', 'force_plates/left/wrench')
 #: Topics the motion tracker reads.
 INPUTS = ('markers', 'box/pose', *PLATES)
@@ -86,6 +89,10 @@ class RunOptions:
         Namespace of the graph.
     settle_timeout : float
         Time [s] the graph has after the recording's end to finish all lifts.
+    visualize : bool
+        Also start the node that draws for RViz and Foxglove.
+    record_visualization : bool
+        Also put what it draws into the results file.
     """
 
     bag: Path
@@ -93,6 +100,8 @@ class RunOptions:
     rate: float = 1.0
     station: str = 'station_1'
     settle_timeout: float = 120.0
+    visualize: bool = False
+    record_visualization: bool = False
 
 
 @dataclass
@@ -172,7 +181,9 @@ def run_online(
     logs = options.output / 'logs'
     with ExitStack() as stack:
         if processes is None:
-            processes = stack.enter_context(node_processes(logs, options.station))
+            processes = stack.enter_context(
+                node_processes(logs, options.station, options.visualize)
+            )
         summary = summarise(options.bag)
         shutil.rmtree(options.output / 'recording', ignore_errors=True)
         helpers = _start_helpers(options, logs, summary)
@@ -194,7 +205,7 @@ def run_online(
         stack.callback(_stop, [*helpers, *processes])
         executor.add_node(node)
         graph = Graph(node, executor, options.station, processes, say)
-        say('starting the graph: muscle_analyzer, lift_predictor, motion_tracker, injury_monitor')
+        say(f'starting the graph: {", ".join(process.name for process in processes)}')
         graph.bring_up()
         session = _Session(options, summary, node, executor, graph)
         session.wait_for_service(SetBool, 'player/pause', [recorder, player])
@@ -213,7 +224,10 @@ def _stop(processes: list[NodeProcess]) -> None:
 def _start_helpers(
     options: RunOptions, logs: Path, summary: BagSummary
 ) -> list[NodeProcess]:
-    topics = [f'/{options.station}/{topic}' for topic in RESULT_TOPICS]
+    wanted = RESULT_TOPICS + (VISUALIZATION_TOPICS if options.record_visualization else ())
+    topics = [
+        topic if topic.startswith('/') else f'/{options.station}/{topic}' for topic in wanted
+    ]
     recorder = start_module(
         'recorder',
         'lifting_bringup.cli',

@@ -22,6 +22,10 @@ PLATE_DEPTH = 40_000
 FRAME_DEPTH = 20_000
 #: Lifts kept for a reader that joins late.
 LIFT_DEPTH = 100
+#: Pictures kept for a viewer that is late; it loses older ones.
+VIEW_DEPTH = 10
+#: Depth of /tf with all broadcasters of ROS 2.
+TRANSFORM_DEPTH = 100
 
 
 def _profile(depth: int, durability: DurabilityPolicy) -> QoSProfile:
@@ -41,3 +45,7 @@ FRAMES = _profile(FRAME_DEPTH, DurabilityPolicy.VOLATILE)
 LATCHED = _profile(1, DurabilityPolicy.TRANSIENT_LOCAL)
 #: Results of whole lifts and alarms: a reader that joins late gets the recent ones.
 RESULTS = _profile(LIFT_DEPTH, DurabilityPolicy.TRANSIENT_LOCAL)
+#: Pictures for people. Reliable, as RViz asks for it, and short: nobody waits for a viewer.
+VIEW = _profile(VIEW_DEPTH, DurabilityPolicy.VOLATILE)
+#: /tf, as the broadcasters of ROS 2 offer it.
+TRANSFORMS = _profile(TRANSFORM_DEPTH, DurabilityPolicy.VOLATILE)

@@ -16,6 +16,7 @@ from rclpy.executors import Executor
 from rclpy.node import Node
 from rosbags.interfaces import Nodetype
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
+from rosbags.typesys.store import Typestore
 
 from lifting_bringup.bags.bag_writer import BAG_VERSION, quality
 from lifting_bringup.bags.exceptions import BagError
@@ -29,6 +30,7 @@ _SPIN_SECONDS = 0.05
 _HOUSEKEEPING = ('/rosout', '/parameter_events', '/clock')
 _STAMP_LITTLE, _STAMP_BIG = struct.Struct('<iI'), struct.Struct('>iI')
 _CDR_HEAD = 4
+_HEADER = (Nodetype.NAME, 'std_msgs/msg/Header')
 
 
 @dataclass(frozen=True)
@@ -100,8 +102,9 @@ def record(
 ) -> RecordReport:
     """Record until stopped.
 
-    A message is stored under the stamp of its own header (so that results line up with the
-    recording they came from), without header under the wall time of its arrival.
+    A message is stored under the stamp of its own header, or of its first part's (so that results
+    line up with the recording they came from); one without a stamp, or with 0, under the latest
+    stamp so far, or under the wall time of its arrival where there was none.
 
     Raises
     ------
@@ -135,6 +138,7 @@ class _Recording:
         self._counts: dict[str, int] = {}
         self._skipped: dict[str, str] = {}
         self._executor = executor
+        self._latest = 0
 
     def run(self) -> RecordReport:
         """Join topics as they appear and write what arrives."""
@@ -191,20 +195,40 @@ class _Recording:
             offered_qos_profiles=[recorded_quality(latched, p) for p in offered],
         )
         self._counts[name] = 0
-        fields = store.fielddefs[msgtype][1]
-        stamped = bool(fields) and fields[0][1] == (Nodetype.NAME, 'std_msgs/msg/Header')
+        place = _stamp_place(store, msgtype)
         write, counts = self._writer.write, self._counts
 
         def on_message(data: bytes) -> None:
-            write(connection, _stamp(data) if stamped else time.time_ns(), data)
+            stamp = _stamp(data, place) if place else 0
+            if stamp:
+                self._latest = max(self._latest, stamp)
+            write(connection, stamp or self._latest or time.time_ns(), data)
             counts[name] += 1
 
         self._node.create_subscription(cls, name, on_message, profile, raw=True)
         self._control.joined = frozenset(self._counts)
 
 
-def _stamp(data: bytes) -> int:
-    """Return the header's stamp of a serialised message [ns]; wall time where it is zero."""
+def _stamp_place(store: Typestore, msgtype: str) -> int:
+    """Return where in a serialised message its stamp is, or that of its first part; 0: nowhere."""
+    kind, of = _first_field(store, msgtype)
+    if (kind, of) == _HEADER:
+        return _CDR_HEAD
+    # A list of stamped messages (markers, transforms): after its length.
+    if kind == Nodetype.SEQUENCE and of[0][0] == Nodetype.NAME:
+        return 2 * _CDR_HEAD if _first_field(store, of[0][1]) == _HEADER else 0
+    return 0
+
+
+def _first_field(store: Typestore, msgtype: str) -> tuple[Any, Any]:
+    fields = store.fielddefs[msgtype][1]
+    return fields[0][1] if fields else (None, None)
+
+
+def _stamp(data: bytes, place: int) -> int:
+    """Return the stamp at a place of a serialised message [ns]; 0 where there is none."""
     layout = _STAMP_LITTLE if data[1] & 1 else _STAMP_BIG
-    seconds, nanoseconds = layout.unpack_from(data, _CDR_HEAD)
-    return seconds * 1_000_000_000 + nanoseconds or time.time_ns()
+    if len(data) < place + layout.size:
+        return 0  # an empty list
+    seconds, nanoseconds = layout.unpack_from(data, place)
+    return int(seconds * 1_000_000_000 + nanoseconds)

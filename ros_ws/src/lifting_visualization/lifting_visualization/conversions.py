@@ -1,0 +1,122 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Messages of shapes and links."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+from builtin_interfaces.msg import Time
+from geometry_msgs.msg import Point, Quaternion, TransformStamped, Vector3
+from lifting_interfaces.msg import SpineLoad
+from std_msgs.msg import ColorRGBA
+from tf2_msgs.msg import TFMessage
+from visualization_msgs.msg import Marker, MarkerArray
+
+from lifting_node.conversions import LABORATORY
+from lifting_node.stamps import to_seconds
+from lifting_visualization.core.exceptions import PictureError
+from lifting_visualization.core.link_frames import LinkFrames
+from lifting_visualization.core.shapes import Array, Kind, Shape
+
+_TYPES = {
+    Kind.LINES: Marker.LINE_LIST,
+    Kind.BALLS: Marker.SPHERE_LIST,
+    Kind.ARROW: Marker.ARROW,
+    Kind.BOX: Marker.CUBE,
+    Kind.TEXT: Marker.TEXT_VIEW_FACING,
+}
+
+
+def markers_to_msg(shapes: Sequence[Shape], stamp: Time) -> MarkerArray:
+    """Return the markers of shapes, all in the laboratory frame."""
+    return MarkerArray(markers=[_marker(shape, stamp) for shape in shapes])
+
+
+def clear_msg(stamp: Time) -> MarkerArray:
+    """Return what takes away all that was drawn."""
+    marker = Marker(action=Marker.DELETEALL)
+    marker.header.stamp = stamp
+    marker.header.frame_id = LABORATORY
+    return MarkerArray(markers=[marker])
+
+
+def _marker(shape: Shape, stamp: Time) -> Marker:
+    marker = Marker(ns=shape.layer, id=shape.number, text=shape.text)
+    marker.header.stamp = stamp
+    marker.header.frame_id = LABORATORY
+    if shape.kind is Kind.NOTHING:
+        marker.action = Marker.DELETE
+        return marker
+    marker.type = _TYPES[shape.kind]
+    marker.scale = Vector3(x=shape.size[0], y=shape.size[1], z=shape.size[2])
+    red, green, blue, opacity = shape.colour
+    marker.color = ColorRGBA(r=red, g=green, b=blue, a=opacity)
+    if shape.kind in (Kind.BOX, Kind.TEXT):
+        marker.pose.position = _point(shape.points[0].tolist())
+        marker.pose.orientation = _quaternion(shape.orientation.tolist())
+    else:
+        marker.points = [_point(point) for point in shape.points.tolist()]
+    return marker
+
+
+def _point(values: Sequence[float]) -> Point:
+    return Point(x=values[0], y=values[1], z=values[2])
+
+
+def _quaternion(values: Sequence[float]) -> Quaternion:
+    return Quaternion(x=values[0], y=values[1], z=values[2], w=values[3])
+
+
+class TransformWriter:
+    """The message of the moving links, of which only the numbers change."""
+
+    def __init__(self, links: LinkFrames) -> None:
+        self._message = TFMessage(transforms=[
+            _named(parent, child)
+            for parent, child in zip(links.parents, links.children, strict=True)])
+
+    def message(self, stamp: Time, transforms: Array) -> TFMessage:
+        """Return the message of translations and quaternions (n, 7); good until the next one."""
+        for entry, values in zip(self._message.transforms, transforms.tolist(), strict=True):
+            entry.header.stamp = stamp
+            place, turn = entry.transform.translation, entry.transform.rotation
+            place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w = values
+        return self._message
+
+
+def fixed_to_msg(links: LinkFrames, stamp: Time) -> TFMessage:
+    """Return the message of the links that have no joint."""
+    message = TFMessage()
+    for parent, child, place in links.fixed:
+        entry = _named(parent, child)
+        entry.header.stamp = stamp
+        at = entry.transform.translation
+        at.x, at.y, at.z = place.tolist()
+        message.transforms.append(entry)
+    return message
+
+
+def _named(parent: str, child: str) -> TransformStamped:
+    entry = TransformStamped(child_frame_id=child)
+    entry.header.frame_id = parent
+    return entry
+
+
+def compression_from_msg(message: SpineLoad) -> tuple[Array, Array, npt.NDArray[np.int64]]:
+    """Return stamps (n,) [s], compression (n,) [N] and statuses (n,).
+
+    Raises
+    ------
+    PictureError
+        If the arrays have different lengths or are empty.
+    """
+    time = to_seconds(message.header.stamp) + np.asarray(message.time_from_start, np.float64)
+    values = np.asarray(message.compression, np.float64)
+    status = np.asarray(message.status, np.int64)
+    if not time.size or not time.size == values.size == status.size:
+        raise PictureError(f'spine_load: {time.size} times, {values.size} compressions, '
+                           f'{status.size} statuses')
+    return time, values, status

@@ -1,0 +1,17 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Errors of the package."""
+
+from __future__ import annotations
+
+
+class LiftingVisualizationError(ValueError):
+    """Base of what can be wrong with the input of the package."""
+
+
+class PictureError(LiftingVisualizationError):
+    """Data that cannot be drawn; says which and why."""
+
+
+class DataFileError(LiftingVisualizationError):
+    """A table of the package is damaged; names file and value."""

@@ -1,0 +1,35 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Packaging of lifting_visualization for colcon and pip."""
+
+from glob import glob
+
+from setuptools import find_packages, setup
+
+package_name = 'lifting_visualization'
+
+setup(
+    name=package_name,
+    version='0.1.0',
+    packages=find_packages(exclude=['test']),
+    package_data={'': ['py.typed', 'data/**/*']},
+    data_files=[
+        ('share/ament_index/resource_index/packages', ['resource/' + package_name]),
+        ('share/' + package_name, ['package.xml']),
+        ('share/' + package_name + '/config', glob('config/*.*')),
+        ('share/' + package_name + '/launch', glob('launch/*.launch.py')),
+    ],
+    zip_safe=False,
+    maintainer='The lift monitor authors',
+    maintainer_email='maintainers@lift-monitor.example',
+    description=(
+        'Markers, frames of /tf and URDF of persons, loads and predicted lifts for RViz and '
+        'Foxglove.'
+    ),
+    license='Apache-2.0',
+    entry_points={
+        'console_scripts': [
+            'lifting_visualization_node = lifting_visualization.lifting_visualization_node:main'
+        ],
+    },
+)

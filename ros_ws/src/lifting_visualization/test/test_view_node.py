@@ -1,0 +1,201 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""The node in this process: what it publishes of a person, and when it is silent."""
+
+import time
+
+import numpy as np
+import pytest
+
+rclpy = pytest.importorskip('rclpy', reason='rclpy is not installed')
+pytest.importorskip('lifting_interfaces.msg', reason='the interface package is not built')
+pytest.importorskip('tf2_msgs.msg', reason='tf2_msgs is neither built nor installed')
+
+from geometry_msgs.msg import PoseStamped  # noqa: E402
+from lifting_interfaces.msg import (  # noqa: E402
+    BodyMotion,
+    MeasuredLift,
+    PredictedLift,
+    SpineLoad,
+    Subject,
+    Task,
+)
+from rclpy.executors import SingleThreadedExecutor  # noqa: E402
+from std_msgs.msg import String  # noqa: E402
+from tf2_msgs.msg import TFMessage  # noqa: E402
+from visualization_msgs.msg import Marker, MarkerArray  # noqa: E402
+
+from lifting_node import qos  # noqa: E402
+from lifting_node.conversions import MotionQuality, motion_to_msg, subject_to_msg  # noqa: E402
+from lifting_node.stamps import to_stamp  # noqa: E402
+from lifting_visualization.lifting_visualization_node import (  # noqa: E402
+    LiftingVisualizationNode,
+)
+
+PATIENCE = 20.0
+
+
+class Station:
+    """The node and a client beside it, spun together."""
+
+    def __init__(self, parameters):
+        arguments = ['--ros-args', '-r', '__ns:=/cell_3']
+        for name, value in parameters.items():
+            arguments += ['-p', f'{name}:={value}']
+        rclpy.init(args=arguments)
+        self.node = LiftingVisualizationNode()
+        self.client = rclpy.create_node('client', namespace='cell_3')
+        self.executor = SingleThreadedExecutor()
+        self.executor.add_node(self.node)
+        self.executor.add_node(self.client)
+        self.markers, self.transforms, self.fixed, self.urdf = {}, [], [], []
+        take = self.client.create_subscription
+        take(MarkerArray, 'visualization', self._on_markers, qos.VIEW)
+        take(TFMessage, '/tf', self.transforms.append, qos.TRANSFORMS)
+        take(TFMessage, '/tf_static', self.fixed.append, qos.LATCHED)
+        take(String, 'robot_description', self.urdf.append, qos.LATCHED)
+        topics = {'subject': (Subject, qos.LATCHED), 'task': (Task, qos.LATCHED),
+                  'body_motion': (BodyMotion, qos.FRAMES), 'spine_load': (SpineLoad, qos.FRAMES),
+                  'box/pose': (PoseStamped, qos.FRAMES),
+                  'measured_lift': (MeasuredLift, qos.RESULTS),
+                  'predicted_lift': (PredictedLift, qos.RESULTS)}
+        self.publishers = {topic: self.client.create_publisher(kind, topic, profile)
+                           for topic, (kind, profile) in topics.items()}
+
+    def _on_markers(self, message):
+        for marker in message.markers:
+            if marker.action == Marker.DELETEALL:
+                self.markers.clear()
+            elif marker.action == Marker.DELETE:
+                self.markers.pop((marker.ns, marker.id), None)
+            else:
+                self.markers[marker.ns, marker.id] = marker
+
+    def until(self, condition, what):
+        """Spin until a condition holds; fail by name when patience is over."""
+        deadline = time.monotonic() + PATIENCE
+        while not condition():
+            assert time.monotonic() < deadline, f'{what} did not happen in {PATIENCE} s'
+            self.executor.spin_once(timeout_sec=0.05)
+
+    def spin(self, duration):
+        """Spin for so long [s]."""
+        end = time.monotonic() + duration
+        while time.monotonic() < end:
+            self.executor.spin_once(timeout_sec=0.02)
+
+    def send(self, topic, message):
+        """Publish once there is a reader."""
+        publisher = self.publishers[topic]
+        self.until(lambda: publisher.get_subscription_count() > 0, f'reader of {topic}')
+        publisher.publish(message)
+
+    def close(self):
+        """End everything."""
+        self.executor.shutdown()
+        self.client.destroy_node()
+        self.node.destroy_node()
+        rclpy.shutdown()
+
+
+@pytest.fixture
+def station(request):
+    """Return an active station; parametrise indirectly with node parameters."""
+    made = Station(getattr(request, 'param', {}))
+    made.node.trigger_configure()
+    made.node.trigger_activate()
+    yield made
+    made.close()
+
+
+def motion_message(motion, status=0):
+    """Return the message of a motion whose samples have a status."""
+    quality = MotionQuality.exact(len(motion))
+    quality.status[:] = status
+    return motion_to_msg(motion, quality)
+
+
+def test_person_motion_and_load(station, woman, motion_at):
+    station.send('subject', subject_to_msg(woman, 1.0, '', ''))
+    station.send('task', Task(task_id='t', box_size=[0.3, 0.4, 0.2]))
+    station.until(lambda: station.urdf and station.fixed, 'robot_description and /tf_static')
+    assert '<robot name="S04">' in station.urdf[-1].data
+    assert station.fixed[-1].transforms[0].child_frame_id == 'cell_3/head'
+    station.send('body_motion', motion_message(motion_at(2.0, box_position=[[0.4, 0.0, 0.1]])))
+    station.until(lambda: station.transforms and ('box', 0) in station.markers, 'a picture')
+    names = {entry.child_frame_id for entry in station.transforms[-1].transforms}
+    assert len(names) == 40
+    assert 'cell_3/pelvis' in names
+    assert ('l5_s1', 0) not in station.markers
+    load = SpineLoad(source=SpineLoad.LIVE, time_from_start=[0.0], compression=[6500.0],
+                     status=[0])
+    load.header.stamp = to_stamp(2.0)
+    station.send('spine_load', load)
+    station.until(lambda: ('l5_s1', 1) in station.markers, 'the arrow of the load')
+    assert station.markers['l5_s1', 1].text == '6500 N'
+
+
+def test_a_sample_that_was_not_solved_moves_no_link(station, woman, motion_at):
+    station.send('subject', subject_to_msg(woman, 1.0, '', ''))
+    station.until(lambda: station.urdf, 'robot_description')
+    station.send('body_motion', motion_message(motion_at(2.0), status=101))
+    station.until(lambda: ('person', 0) in station.markers, 'a picture')
+    station.spin(0.2)
+    assert station.transforms == []
+    assert station.markers['person', 0].color.a < 1.0
+
+
+def test_predicted_lift_goes_round(station, woman, skeleton):
+    station.send('subject', subject_to_msg(woman, 1.0, '', ''))
+    n = 5
+    q = np.tile(skeleton.standing(), (n, 1))
+    q[:, skeleton.index('pelvis_tx')] += np.linspace(0.0, 0.4, n)
+    motion = skeleton.body_motion(3.0 + np.linspace(0.0, 0.4, n), q, 0 * q, 0 * q)
+    message = PredictedLift(lift_id='lift_001', box_mass=9.0,
+                            motion=motion_to_msg(motion, MotionQuality.exact(n)))
+    station.send('predicted_lift', message)
+    places = set()
+    station.until(lambda: ('predicted', 0) in station.markers, 'the predicted lift')
+
+    def moved():
+        places.add(station.markers['predicted', 0].points[0].x)
+        return len(places) > 1
+
+    station.until(moved, 'another posture of the predicted lift')
+    assert ('hand_paths', 1) in station.markers
+    message.report.status = 201
+    station.send('predicted_lift', message)
+    station.until(lambda: ('predicted', 0) not in station.markers, 'its end')
+
+
+@pytest.mark.parametrize('station', [{'transforms': False}], indirect=True)
+def test_tf_can_be_left_to_robot_state_publisher(station, woman, motion_at):
+    station.send('subject', subject_to_msg(woman, 1.0, '', ''))
+    station.until(lambda: station.urdf, 'robot_description')
+    station.send('body_motion', motion_message(motion_at(2.0)))
+    station.until(lambda: ('person', 0) in station.markers, 'a picture')
+    station.spin(0.2)
+    assert station.transforms == station.fixed == []
+
+
+def test_bad_input_is_counted_and_the_node_goes_on(station, woman, motion_at):
+    station.send('subject', subject_to_msg(woman, 1.0, '', ''))
+    station.send('body_motion', BodyMotion(skeleton='3d_40dof'))
+    station.until(lambda: station.node.counts['errors'] == 1, 'the error')
+    station.send('body_motion', motion_message(motion_at(2.0)))
+    station.until(lambda: ('person', 0) in station.markers, 'a picture')
+
+
+def test_silent_until_active(woman, motion_at):
+    station = Station({})
+    try:
+        station.node.trigger_configure()
+        station.send('subject', subject_to_msg(woman, 1.0, '', ''))
+        station.send('body_motion', motion_message(motion_at(2.0)))
+        station.until(lambda: station.node.counts['samples while not active'] == 1, 'the sample')
+        station.spin(0.2)
+        assert not (station.markers or station.transforms or station.urdf)
+        station.node.trigger_activate()
+        station.until(lambda: station.urdf, 'robot_description')
+    finally:
+        station.close()
