@@ -7,7 +7,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,17 +21,24 @@ from lift_predictor.core.exceptions import AsymmetricLiftError, TaskError, Unrea
 from lift_predictor.core.nearest_lift import HOPELESS, NearestLift, closer_lift, with_nearest
 from lift_predictor.core.sagittal.comparison import LiftComparison, compare
 from lift_predictor.core.sagittal.evaluation import evaluate, sample, total_effort
-from lift_predictor.core.sagittal.feasibility import lighter_lift, missing_way, way_to
+from lift_predictor.core.sagittal.feasibility import (
+    as_nearest,
+    largest_mass,
+    lighter_lift,
+    missing_way,
+    way_to,
+)
 from lift_predictor.core.sagittal.grid import Grid
 from lift_predictor.core.sagittal.lift_motion import body_motion, mtp_torque, sample_times
 from lift_predictor.core.sagittal.optimiser import LiftOptimiser
 from lift_predictor.core.sagittal.outcome import judge
 from lift_predictor.core.sagittal.person import COEFFICIENT_SET, Person
 from lift_predictor.core.sagittal.prediction import TORQUE_NAMES, PredictedLift2D
+from lift_predictor.core.sagittal.refine import Refiner
 from lift_predictor.core.sagittal.solved_lifts import library_starts
 from lift_predictor.core.sagittal.starts import make_starts
 from lift_predictor.core.sagittal.task import POSTURE_TOLERANCE, Box, LiftTask2D, build_task
-from lift_predictor.core.sagittal.verify import Verification, verify
+from lift_predictor.core.sagittal.verify import Verification
 from lift_predictor.core.solvers.optimum import Optimum, Progress, Start
 
 if TYPE_CHECKING:
@@ -41,10 +48,6 @@ if TYPE_CHECKING:
     from lift_predictor.core.spatial.predictor import SpatialOptions, SpatialPredictor
 
 Array = NDArray[np.float64]
-
-MARGIN_FACTOR: Final = 1.05
-"""First margin against a violation between the nodes, in units of the violation; twice as much
-each time that it does not suffice."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +68,8 @@ class PredictorOptions:
         Wall time of one run at most, and time after which none is begun any more [s]: a last
         resort, as runs are limited by their iterations.
     refinements : int
-        How often the lift is solved again with a margin when the dense grid shows a violation.
+        How often the lift is solved again with a margin when the dense grid shows a violation;
+        where that does not help, it is solved with more nodes.
     dimension : str
         '2d', '3d', or 'auto': asymmetric lifts on the 3D skeleton are predicted in space.
     """
@@ -114,6 +118,7 @@ class LiftPredictor:
         self.programme = LiftOptimiser(
             Grid(self.options.n_control, self.options.n_nodes), self.options.time_limit
         )
+        self._refiner = Refiner(self.programme, self.options.refinements)
 
     def configure(self, subject: Subject, segments: SegmentParameters | None = None) -> None:
         """Set the subject, and the segments of the skeleton if they are not to be estimated.
@@ -211,9 +216,7 @@ class LiftPredictor:
 
     def _explained(self, failed: PredictedLift2D, lift: Lift, box: Box) -> PredictedLift2D:
         """Add the limit that breaks first, and the nearest feasible lift, to a failed result."""
-        nearest: NearestLift[PredictedLift2D] | None = None
-        if failed.report.status is not SolveStatus.PREDICTOR_UNREACHABLE:
-            nearest = self.lighter_lift(self._task(lift, box))
+        nearest = failed.nearest
         if nearest is None and not (box.start is None and box.end is None):
             way = way_to(self._task(lift, box, 0.0), box)
             nearest = closer_lift(
@@ -277,11 +280,20 @@ class LiftPredictor:
         build_time = time.perf_counter() - begin
         deadline = begin + self.options.time_limit
         vector = task.parameters.pack()
+        given = starts
         if task.measured is None:
             starts = (*starts, *library_starts(self.programme.grid.spline))
         optima = self.programme.solve_all(vector, task.bounds, starts, deadline, progress)
-        optima, check = self._tighten(task, vector, optima, deadline)
+        optima, check = self._refiner.refine(task, vector, optima, deadline)
         status, message = judge(optima[0], check)
+        nearest: NearestLift[PredictedLift2D] | None = None
+        if status in HOPELESS:
+            runs, second, nearest = self._over_lighter(task, vector, given, deadline)
+            solved = second is not None and second.passed
+            optima = (*runs, *optima) if solved else (*optima, *runs)
+            if solved:
+                check = second
+                status, message = judge(optima[0], check)
         notes = (*task.notes, self.programme.how)
         report = SolveReport(
             status,
@@ -298,33 +310,24 @@ class LiftPredictor:
                 task.lift_id, task.parameters.box_mass, task.parameters.duration, report, optima,
                 check, notes,
             )  # fmt: skip
-            return failed, None
+            return replace(failed, nearest=nearest), None
         return self._result(task, report, optima, check, notes)
 
-    def _tighten(
-        self, task: LiftTask2D, vector: Array, optima: tuple[Optimum, ...], deadline: float
-    ) -> tuple[tuple[Optimum, ...], Verification | None]:
-        """Check the best run between the nodes; solve again with a margin where it fails."""
-        bounds, report = task.bounds, self.programme.report
-        check: Verification | None = None
-        for attempt in range(self.options.refinements + 1):
-            best = optima[0]
-            if not best.converged:
-                break
-            parameters = replace(task.parameters, box_mass=best.box_mass)
-            check = verify(report, self.programme.grid, best.control, parameters, task.bounds)
-            late = attempt == self.options.refinements or time.perf_counter() > deadline
-            if check.passed or late:
-                break
-            margin = 0.0 if bounds.margin is None else bounds.margin
-            factor = MARGIN_FACTOR * 2.0**attempt
-            bounds = replace(bounds, margin=margin + factor * check.excess)
-            again = self.programme.solve(vector, bounds, best.as_start())
-            if not again.converged:
-                optima = (best, again, *optima[1:])
-                break
-            optima = (again, *optima)
-        return optima, check
+    def _over_lighter(
+        self, task: LiftTask2D, vector: Array, starts: Sequence[Start], deadline: float
+    ) -> tuple[
+        tuple[Optimum, ...], Verification | None, NearestLift[PredictedLift2D] | None
+    ]:
+        """Seek a lift that no start led to over lifts of less mass; or the nearest such lift."""
+        found = largest_mass(self.solve_task, task, starts)
+        if found is None or not found.report.ok:
+            return (), None, None
+        nearest = as_nearest(found, task)
+        if nearest is not None:
+            return (), None, nearest
+        again = self.programme.solve(vector, task.bounds, found.optima[0].as_start())
+        runs, check = self._refiner.refine(task, vector, (again,), deadline)
+        return runs, check, None
 
     def _result(
         self,

@@ -27,10 +27,10 @@ Array = NDArray[np.float64]
 Solve = Callable[[LiftTask2D, Sequence[Start]], PredictedLift2D]
 
 
-def lighter_lift(
+def largest_mass(
     solve: Solve, task: LiftTask2D, starts: Sequence[Start]
-) -> NearestLift[PredictedLift2D] | None:
-    """Find the same lift with the largest mass up to the task's.
+) -> PredictedLift2D | None:
+    """Solve the same lift with the largest mass up to the task's.
 
     Parameters
     ----------
@@ -43,18 +43,39 @@ def lighter_lift(
 
     Returns
     -------
-    NearestLift or None
-        None: not even empty hands can move so, or all of the mass can be lifted.
+    PredictedLift2D or None
+        None: the mass is 0 or not given, and there is nothing to take away.
     """
-    asked = float(task.bounds.box_mass[1])
-    if asked == 0.0:
+    least, asked = task.bounds.box_mass
+    if asked == 0.0 or least < asked:
         return None
     parameters = replace(task.parameters, objective=np.array([TIE_BREAK, 1.0]))
     bounds = replace(task.bounds, box_mass=np.array([0.0, asked]))
     # Half the mass asked for is nearer to what is possible than all of it.
     begun = [replace(start, box_mass=0.5 * asked) for start in starts]
-    found = solve(replace(task, parameters=parameters, bounds=bounds), begun)
-    return lighter(found, asked, [name for name, _ in found.optima[0].binding])
+    return solve(replace(task, parameters=parameters, bounds=bounds), begun)
+
+
+def lighter_lift(
+    solve: Solve, task: LiftTask2D, starts: Sequence[Start]
+) -> NearestLift[PredictedLift2D] | None:
+    """Find the nearest lift with less mass.
+
+    Parameters are those of `largest_mass`.
+
+    Returns
+    -------
+    NearestLift or None
+        None: not even empty hands can move so, or all of the mass can be lifted.
+    """
+    found = largest_mass(solve, task, starts)
+    return None if found is None else as_nearest(found, task)
+
+
+def as_nearest(found: PredictedLift2D, task: LiftTask2D) -> NearestLift[PredictedLift2D] | None:
+    """Return what `largest_mass` found as the nearest lift; None as `lighter_lift`."""
+    limits = [name for name, _ in found.optima[0].binding]
+    return lighter(found, float(task.bounds.box_mass[1]), limits)
 
 
 def way_to(task: LiftTask2D, box: Box) -> Array:
