@@ -33,7 +33,7 @@ from muscle_analyzer import conversions
 from muscle_analyzer.core.analyzer import MuscleAnalyzer, MuscleAnalyzerOptions
 from muscle_analyzer.core.exceptions import MuscleAnalyzerError
 from muscle_analyzer.core.muscle_analysis import MuscleAnalysis as Analysis
-from muscle_analyzer.core.scaling import StrengthScaling
+from muscle_analyzer.core.muscle_strength import StrengthScaling
 from muscle_analyzer.core.segment_masses import MassDistribution
 from muscle_analyzer.core.static_optimization import StaticOptimizationOptions
 

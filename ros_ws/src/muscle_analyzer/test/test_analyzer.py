@@ -22,6 +22,7 @@ from muscle_analyzer.core.exceptions import (
     OptionError,
     TransferError,
 )
+from muscle_analyzer.core.muscle_strength import StrengthScaling
 from muscle_analyzer.core.reserves import read_reserves
 
 SUBJECT = Subject('p01', 'male', 63.5, 1.69, 25)
@@ -305,6 +306,19 @@ def test_force_length_velocity_weakens_muscles(analyzer, skeleton):
     assert weak.report.objective > strong.report.objective
     maximum = strong.force[0] / strong.activation[0]
     assert np.all(weak.force[0] <= maximum * 1.001)
+
+
+def test_weaker_people_use_more_of_their_muscles(analyzer, skeleton):
+    motion = held_posture(skeleton, POSE_3D)
+    usual = analyzer.analyze(motion, source='measured')
+    weak = MuscleAnalyzer(MuscleAnalyzerOptions(strength=StrengthScaling.POPULATION))
+    weak.configure(replace(SUBJECT, strength_z=-1.0))
+    more = weak.analyze(motion, source='measured')
+    trunk = [k for k, name in enumerate(usual.muscle_names) if name.startswith(('LTp', 'MF_'))]
+    assert more.activation[0, trunk].sum() > 1.1 * usual.activation[0, trunk].sum()
+    # The torques are the same and so, nearly, are the forces that balance them.
+    assert more.torque == pytest.approx(usual.torque, abs=1e-9)
+    assert more.compression == pytest.approx(usual.compression, rel=0.05)
 
 
 def test_wrong_use_is_refused(analyzer, skeleton):

@@ -7,7 +7,7 @@ import pytest
 
 from muscle_analyzer.core.exceptions import ScalingError
 from muscle_analyzer.core.osim_reader import read_osim
-from muscle_analyzer.core.scaling import StrengthScaling, scale_model
+from muscle_analyzer.core.scaling import scale_model
 from muscle_analyzer.core.subject_model import default_path_lengths
 
 FACTORS = {'upper': np.array([1.1, 1.2, 1.3]), 'lower': np.array([0.9, 0.9, 0.9])}
@@ -51,12 +51,18 @@ def test_fibre_and_tendon_follow_the_path(scaled):
     assert after.max_isometric_force == before.max_isometric_force
 
 
-def test_strength_grows_with_mass_to_two_thirds_if_asked_for(write_model):
+def test_muscle_forces_are_multiplied_if_asked_for(write_model):
     model = read_osim(write_model())
-    strong = scale_model(
-        model, FACTORS, 3.5 * 8.0, default_path_lengths, StrengthScaling.GEOMETRIC
-    )
+    strong = scale_model(model, FACTORS, 28.0, default_path_lengths, np.array([4.0]))
     assert strong.muscles[0].max_isometric_force == pytest.approx(4.0 * 500.0)
+
+
+@pytest.mark.parametrize('factors', [[1.0, 1.0], [0.0], [np.nan]])
+def test_factors_of_forces_that_do_not_fit_are_refused(write_model, factors):
+    with pytest.raises(ScalingError, match='muscle forces'):
+        scale_model(
+            read_osim(write_model()), FACTORS, 7.0, default_path_lengths, np.array(factors)
+        )
 
 
 @pytest.mark.parametrize(

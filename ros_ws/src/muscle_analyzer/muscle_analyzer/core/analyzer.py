@@ -28,6 +28,7 @@ from muscle_analyzer.core.disc_frame import disc_option
 from muscle_analyzer.core.exceptions import InputArrayError, NotConfiguredError
 from muscle_analyzer.core.model_cache import load_model
 from muscle_analyzer.core.muscle_analysis import MuscleAnalysis
+from muscle_analyzer.core.muscle_strength import force_factors
 from muscle_analyzer.core.osim_model import OsimModel
 from muscle_analyzer.core.segment_masses import MassDistribution, segment_masses
 from muscle_analyzer.core.subject_model import lifting_model_path, subject_model
@@ -80,7 +81,7 @@ class MuscleAnalyzer:
             skeleton.points(upright),
             skeleton.parameters.lengths,
             subject.mass,
-            self.options.strength,
+            force_factors(self._generic, subject, self.options.muscle_strength),
             segment_masses(skeleton) if own else None,
         )
         self._subject = subject

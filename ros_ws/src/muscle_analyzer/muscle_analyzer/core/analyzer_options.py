@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from muscle_analyzer.core.disc_frame import DEFAULT_OPTION
+from muscle_analyzer.core.muscle_strength import StrengthOptions, StrengthScaling
 from muscle_analyzer.core.recruitment import MuscleWeighting
-from muscle_analyzer.core.scaling import StrengthScaling
 from muscle_analyzer.core.segment_masses import MassDistribution
 from muscle_analyzer.core.static_optimization import StaticOptimizationOptions
 
@@ -32,7 +32,10 @@ class MuscleAnalyzerOptions:
     geodesic_wrapping
         Whether paths over a single cylinder are geodesics or OpenSim's construction.
     strength
-        How muscle strength follows body mass.
+        What muscle strength follows (see `muscle_strength.StrengthScaling`).
+    strength_ageing
+        Only with strength `population`: what age takes from trunk and shoulder muscles (see
+        `muscle_strength.StrengthOptions`).
     mass_distribution
         Whose share of the body mass each segment has (see `segment_masses.MassDistribution`).
     coefficient_set
@@ -52,6 +55,7 @@ class MuscleAnalyzerOptions:
     passive_force: bool = False
     geodesic_wrapping: bool = False
     strength: StrengthScaling = StrengthScaling.NONE
+    strength_ageing: str = 'doherty2003'
     mass_distribution: MassDistribution = MassDistribution.MODEL
     coefficient_set: str = 'anderson2007_nonneg'
     muscle_weighting: str = MuscleWeighting.EQUAL
@@ -59,3 +63,8 @@ class MuscleAnalyzerOptions:
     static_optimization: StaticOptimizationOptions = field(
         default_factory=StaticOptimizationOptions
     )
+
+    @property
+    def muscle_strength(self) -> StrengthOptions:
+        """What the strength of the muscles follows, put together."""
+        return StrengthOptions(self.strength, self.strength_ageing, self.coefficient_set)

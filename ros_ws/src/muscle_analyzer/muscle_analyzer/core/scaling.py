@@ -5,7 +5,8 @@
 Everything fixed to a body is stretched along the body's axes: joint frames, path points, wrap
 objects, markers, mass centres. Masses keep their distribution and add up to the subject's. Optimal
 fibre and tendon slack lengths are multiplied by the ratio of the muscle's path lengths after and
-before, in the default posture. Maximum isometric forces are kept unless asked for.
+before, in the default posture. Maximum isometric forces are kept unless factors are given
+(`muscle_strength`).
 
 One thing differs from OpenSim: inertia tensors are those of the stretched mass distribution
 itself, where OpenSim takes a cylinder if the factors of a body's axes differ. With equal factors
@@ -16,7 +17,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,23 +38,12 @@ Array = NDArray[np.float64]
 PathLengths = Callable[[OsimModel], Array]
 
 
-class StrengthScaling(StrEnum):
-    """What happens to the maximum isometric forces.
-
-    `none` keeps them, as OpenSim does. `geometric` takes them as cross-sections of similar bodies,
-    which grow with mass to the power 2/3.
-    """
-
-    NONE = 'none'
-    GEOMETRIC = 'geometric'
-
-
 def scale_model(
     model: OsimModel,
     factors: Mapping[str, Array],
     mass: float,
     path_lengths: PathLengths,
-    strength: StrengthScaling = StrengthScaling.NONE,
+    force_factors: Array | None = None,
 ) -> OsimModel:
     """Return the model stretched to a subject.
 
@@ -67,7 +56,8 @@ def scale_model(
         Of the subject, kg.
     path_lengths : callable
         Returns the muscles' path lengths (n_muscles,) of a model in its default posture, m.
-    strength : StrengthScaling
+    force_factors : array (n_muscles,), optional
+        What the maximum isometric forces are multiplied with; without it they are kept.
 
     Raises
     ------
@@ -98,12 +88,15 @@ def scale_model(
     if not np.all(np.isfinite(ratio)):
         bad = model.muscles[int(np.argmin(np.isfinite(ratio)))].name
         raise ScalingError(f'muscle {bad!r}: path length in the default posture is not finite')
-    force_ratio = mass_ratio ** (2.0 / 3.0) if strength is StrengthScaling.GEOMETRIC else 1.0
+    forces = np.ones_like(ratio) if force_factors is None else force_factors
+    if forces.shape != ratio.shape or not np.all(np.isfinite(forces) & (forces > 0.0)):
+        raise ScalingError(f'{model.source}: factors of {forces.size} muscle forces are given for '
+                           f'{ratio.size} muscles, or not all are positive')
     return replace(
         stretched,
         muscles=tuple(
-            _scale_muscle(muscle, float(r), force_ratio)
-            for muscle, r in zip(stretched.muscles, ratio, strict=True)
+            _scale_muscle(muscle, float(r), float(f))
+            for muscle, r, f in zip(stretched.muscles, ratio, forces, strict=True)
         ),
     )
 

@@ -20,7 +20,7 @@ from muscle_analyzer.core.multibody import MultibodyModel, compile_model
 from muscle_analyzer.core.muscle_path_table import path_table
 from muscle_analyzer.core.muscle_paths import posture_paths
 from muscle_analyzer.core.osim_model import OsimModel
-from muscle_analyzer.core.scaling import StrengthScaling, scale_model
+from muscle_analyzer.core.scaling import scale_model
 from muscle_analyzer.core.segment_masses import SegmentMass, with_segment_masses
 
 Array = NDArray[np.float64]
@@ -80,7 +80,7 @@ def subject_model(
     points: Mapping[str, Array],
     lengths: Mapping[str, float],
     mass: float,
-    strength: StrengthScaling = StrengthScaling.NONE,
+    force_factors: Array | None = None,
     segments: Mapping[str, SegmentMass] | None = None,
 ) -> SubjectModel:
     """Scale a model to a subject and compile it.
@@ -95,7 +95,8 @@ def subject_model(
         The subject's segment lengths, m (`human_model.anthropometry`).
     mass : float
         kg.
-    strength : StrengthScaling
+    force_factors : array (n_muscles,), optional
+        What the muscles' maximum isometric forces are multiplied with (`muscle_strength`).
     segments : mapping of str to SegmentMass, optional
         Masses of the subject's segments in the same posture; without them the body mass is
         distributed as in the generic model.
@@ -107,7 +108,7 @@ def subject_model(
     """
     factors = scale_factors(compile_model(generic), points, lengths)
     model = with_published_ranges(
-        scale_model(generic, factors, mass, default_path_lengths, strength)
+        scale_model(generic, factors, mass, default_path_lengths, force_factors)
     )
     if segments is not None:
         model = with_segment_masses(model, segments, points)
