@@ -22,7 +22,7 @@ _VECTOR_BYTES = 64
 
 
 class _CGroup(ctypes.Structure):
-    """`struct group` of assembly.c; the last five pointers belong to C."""
+    """`struct group` of assembly.c; the last six pointers belong to C."""
 
     _fields_ = (
         *((name, ctypes.c_int) for name in (
@@ -32,7 +32,9 @@ class _CGroup(ctypes.Structure):
         ('basis', _DOUBLE),
         ('cost_weight', _DOUBLE),
         ('row', _INT),
-        *((name, ctypes.c_void_p) for name in ('input', 'out', 'multiplier', 'weight', 'second')),
+        *((name, ctypes.c_void_p) for name in (
+            'input', 'out', 'multiplier', 'weight', 'second', 'shares',
+        )),
     )  # fmt: skip
 
 

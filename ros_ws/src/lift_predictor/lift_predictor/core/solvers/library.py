@@ -28,7 +28,8 @@ FLAGS: Final = (
 VECTOR_LIBM: Final = ('-DVECTOR_LIBM', '-lmvec')
 """Sine, exponential and so on of glibc's vector library, where there is one."""
 KERNEL: Final = (
-    'lanes.h', 'assembly.c', 'solver.c', 'measures.c', 'steps.c', 'interior_point.c',
+    'lanes.h', 'assembly.c', 'condense.c', 'solver.c', 'measures.c', 'steps.c',
+    'interior_point.c',
 )  # fmt: skip
 GENERATORS: Final = ('node_function.py', 'emit.py')
 

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from itertools import accumulate, pairwise
 from typing import Any
 
 import casadi as ca
@@ -21,12 +22,15 @@ from lift_predictor.core.spatial.grid import (
     WEIGHT_OFFSET,
 )
 from lift_predictor.core.spatial.parameters import (
+    ARM,
     CONSTANT_STRENGTH,
     DEPENDENT,
     N_PARAMETERS,
     N_SCALARS,
     N_SPLINED,
+    ROOT,
     SPHERE_BODIES,
+    SPINE,
     STRONG,
     unpack,
 )
@@ -48,26 +52,34 @@ def kernel_functions() -> list[NodeFunction]:
     effort_factor, weight_factor = unpack(p)['objective'][0]
     weight = unpack(p)['gravity'][0][0] * mass + WEIGHT_OFFSET
     cost = effort_factor * duration * instant['effort'] - weight_factor * ca.log(weight)
-    # What depends on the fewest intermediate results comes last: accelerations and the mass touch
-    # the loads only, speeds also the strength.
-    n = N_SPLINED
-    sets = (
-        tuple(range(n)),
-        tuple(range(n, 2 * n)),
-        (*range(2 * n, 3 * n), 3 * n),
-        (3 * n + 1,),
-    )
     posture, still = ca.SX.sym('q', N_SPLINED), ca.SX(N_SPLINED, 1)
     state = body_state(posture, still, still, p)
     right, left = state.hand
     report = ca.vertcat(*(ca.vec(instant[name]) for name, _ in REPORT_OUTPUTS))
     return [
-        SweptFunction('node', z, s, p, instant['rows'], cost, sets=sets),
+        SweptFunction('node', z, s, p, instant['rows'], cost, sets=_sets()),
         NodeFunction('angle', posture, none, p, posture[N_SPLINED - len(LIMITED) :]),
         NodeFunction('hand', posture, none, p, ca.vertcat(right[0], left[0]) / HAND_SCALE),
         NodeFunction('technique', posture, none, p, _technique(state, p) / HAND_SCALE),
         NodeFunction('report', z, s, p, report, differentiable=False),
     ]
+
+
+def _sets() -> tuple[tuple[int, ...], ...]:
+    """Return the inputs of `node` in the order of their sweeps: what touches most of it first.
+
+    The duration acts on everything, pelvis and legs move the whole body, spine and arms what is
+    beyond them, accelerations and the box's mass act on the loads only.
+    """
+    edges = accumulate((0, len(ROOT), len(SPINE), len(ARM), len(ARM)))
+    posture_and_speed = (
+        tuple(range(order * N_SPLINED + first, order * N_SPLINED + last))
+        for first, last in pairwise(edges)
+        for order in (0, 1)
+    )
+    accelerations = range(2 * N_SPLINED, 3 * N_SPLINED)
+    mass, duration = N_NODE, N_NODE + 1
+    return ((duration,), *posture_and_speed, (*accelerations, mass))
 
 
 def torque_limits(angle: dict[str, Any], rate: dict[str, Any], p: Any) -> tuple[Any, Any]:

@@ -17,14 +17,15 @@ struct group {
     const double *cost_weight;           // (n_batches, LANES), 0 in unused lanes
     const int *row;                      // (n_batches, LANES): first row of the node; -1: unused
     vec *in, *out, *multiplier, *weight, *second;  // work space, by batch where it is kept
+    double *shares;                                // tables of condense.c
 };
 
 struct programme {
     int n, m, n_groups;
     struct group *groups;
     const double *parameters;
-    vec *dense, *half, *local;  // work space of one batch
-    double *square;             // (n, n)
+    vec *dense, *plain, *scaled;  // work space of one batch
+    double *square;               // (n, n)
 };
 
 extern const struct function lift_functions[];
@@ -48,44 +49,6 @@ static const struct function *function_of(const struct group *g) {
 }
 
 static int n_out(const struct function *f) { return 1 + f->n_rows + f->n_in + f->n_jacobian; }
-
-void lift_close(struct programme *p) {
-    if (!p) return;
-    for (int k = 0; p->groups && k < p->n_groups; k++) {
-        struct group *g = &p->groups[k];
-        free(g->in), free(g->out), free(g->multiplier), free(g->weight), free(g->second);
-    }
-    free(p->groups), free(p->dense), free(p->half), free(p->local), free(p->square), free(p);
-}
-
-// A programme with work space of its own; the tables must live as long. NULL: no memory.
-struct programme *lift_open(int n, int m, int n_groups, const struct group *groups) {
-    struct programme *p = calloc(1, sizeof *p);
-    if (!p) return NULL;
-    p->n = n, p->m = m, p->n_groups = n_groups;
-    p->groups = calloc(n_groups, sizeof *groups);
-    p->square = room(((size_t)n * n + LANES - 1) / LANES);
-    int in = 1, locals = 1, ok = p->groups && p->square;
-    for (int k = 0; ok && k < n_groups; k++) {
-        struct group *g = &p->groups[k];
-        *g = groups[k];
-        const struct function *f = function_of(g);
-        g->in = room((size_t)g->n_batches * f->n_in);
-        g->out = room((size_t)g->n_batches * n_out(f));
-        g->multiplier = room(1 + f->n_rows);
-        g->weight = room(1 + f->n_rows);
-        g->second = room(f->n_hessian);
-        ok = g->in && g->out && g->multiplier && g->weight && g->second;
-        if (f->n_in > in) in = f->n_in;
-        if (g->n_locals > locals) locals = g->n_locals;
-    }
-    p->dense = room((size_t)in * in);
-    p->half = room((size_t)in * locals);
-    p->local = room((size_t)locals * locals);
-    if (ok && p->dense && p->half && p->local) return p;
-    lift_close(p);
-    return NULL;
-}
 
 void lift_parameters(struct programme *p, const double *parameters) { p->parameters = parameters; }
 
@@ -257,113 +220,6 @@ void lift_dense_rows(struct programme *p, const int *wanted, int count, double *
             }
         }
     }
-}
-
-// Node matrix (n_in, n_in), lower triangle: Hessian of the Lagrangian and weighted squares.
-static void node_matrix(struct programme *p, struct group *g, int b, vec *dense) {
-    const struct function *f = function_of(g);
-    const vec *in = g->in + (size_t)b * f->n_in;
-    const vec *slope = g->out + (size_t)b * n_out(f) + 1 + f->n_rows + f->n_in;
-    int n = f->n_in;
-    memset(dense, 0, (size_t)n * n * sizeof *dense);
-    if (f->n_hessian) {
-        f->second(in, p->parameters, g->multiplier, g->second);
-        for (int i = 0; i < f->n_hessian; i++)
-            dense[f->hessian_row[i] * n + f->hessian_column[i]] = g->second[i];
-    }
-    for (int first = 0, last; first < f->n_jacobian; first = last) {
-        int row = f->jacobian_row[first];
-        for (last = first; last < f->n_jacobian && f->jacobian_row[last] == row; last++) {
-            vec scaled = g->weight[row] * slope[last];
-            vec *line = dense + f->jacobian_column[last] * n;
-            for (int i = first; i <= last; i++) line[f->jacobian_column[i]] += scaled * slope[i];
-        }
-    }
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < i; j++) dense[j * n + i] = dense[i * n + j];
-}
-
-// local = T' dense T with the spline's T from locals to node inputs; the lower triangle.
-static void transform(const struct group *g, int batch, int n_in, const vec *dense, vec *half,
-                      vec *local) {
-    const vec *all = (const vec *)g->basis + (size_t)batch * basis_size(g);
-    int n = g->n_locals;
-    for (int i = 0; i < n_in; i++) {
-        const vec *basis = all, *line = dense + i * n_in;
-        int at = 0, to = 0;
-        for (int c = 0; c < g->n_channels; c++) {
-            int width = g->width[c], active = g->active[c], orders = g->orders[c];
-            for (int k = 0; k < active; k++)
-                for (int j = 0; j < width; j++) {
-                    vec sum = basis[k] * line[at + j];
-                    for (int o = 1; o < orders; o++)
-                        sum += basis[o * active + k] * line[at + o * width + j];
-                    half[i * n + to + k * width + j] = sum;
-                }
-            at += orders * width, to += active * width, basis += orders * active;
-        }
-        for (int j = 0; j < g->n_scalars; j++) half[i * n + to + j] = line[at + j];
-    }
-    const vec *basis = all;
-    int at = 0, to = 0;
-    for (int c = 0; c < g->n_channels; c++) {
-        int width = g->width[c], active = g->active[c], orders = g->orders[c];
-        for (int k = 0; k < active; k++)
-            for (int j = 0; j < width; j++) {
-                int row = to + k * width + j;
-                for (int i = 0; i <= row; i++) {
-                    vec sum = basis[k] * half[(at + j) * n + i];
-                    for (int o = 1; o < orders; o++)
-                        sum += basis[o * active + k] * half[(at + o * width + j) * n + i];
-                    local[row * n + i] = sum;
-                }
-            }
-        at += orders * width, to += active * width, basis += orders * active;
-    }
-    for (int j = 0; j < g->n_scalars; j++)
-        for (int i = 0; i <= to + j; i++) local[(to + j) * n + i] = half[(at + j) * n + i];
-}
-
-static void scatter(const struct group *g, int batch, const vec *local, double *out, int n) {
-    const int *global = g->global + (size_t)batch * g->n_locals * LANES;
-    for (int i = 0; i < g->n_locals; i++)
-        for (int j = 0; j <= i; j++) {
-            vec value = local[i * g->n_locals + j];
-            const int *row = global + i * LANES, *column = global + j * LANES;
-            if (g->uniform[batch]) {
-                double sum = 0.0;
-                for (int l = 0; l < LANES; l++) sum += value[l];
-                out[(size_t)row[0] * n + column[0]] += sum;
-            } else {
-                for (int l = 0; l < LANES; l++) out[(size_t)row[l] * n + column[l]] += value[l];
-            }
-        }
-}
-
-// sigma Hess f + sum multiplier_i Hess g_i + sum weight_i J_i' J_i at the last point of lift_first.
-void lift_condensed(struct programme *p, double sigma, const double *multiplier,
-                    const double *weight, double *out) {
-    double *square = p->square;
-    int n = p->n;
-    memset(square, 0, (size_t)n * n * sizeof *square);
-    for (int k = 0; k < p->n_groups; k++) {
-        struct group *g = &p->groups[k];
-        const struct function *f = function_of(g);
-        for (int b = 0; b < g->n_batches; b++) {
-            g->multiplier[0] = sigma * *((const vec *)g->cost_weight + b);
-            fetch(g, b, f->n_rows, multiplier, g->multiplier + 1);
-            fetch(g, b, f->n_rows, weight, g->weight);
-            node_matrix(p, g, b, p->dense);
-            transform(g, b, f->n_in, p->dense, p->half, p->local);
-            scatter(g, b, p->local, square, n);
-        }
-    }
-    // Each pair was added once, on whichever side of the diagonal.
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j <= i; j++) {
-            double sum = square[(size_t)i * n + j] + (i == j ? 0.0 : square[(size_t)j * n + i]);
-            out[(size_t)i * n + j] = out[(size_t)j * n + i] = sum;
-        }
 }
 
 // One function at n instants: in (n, n_in), out (n, 1 + n_rows), cost first.

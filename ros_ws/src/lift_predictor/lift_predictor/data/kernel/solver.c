@@ -66,30 +66,51 @@ static double dot(const double *a, const double *b, int n) {
     return total;
 }
 
-// Lower Cholesky factor of a + shift * 1; 0 if it does not exist.
+// Upper Cholesky factor of a + shift * 1, of which the upper triangle is read; 0 if there is none.
 static int cholesky(const double *a, double shift, double *factor, int n) {
-    for (int i = 0; i < n; i++) {
-        double *row = factor + (size_t)i * n;
-        for (int j = 0; j < i; j++) {
-            const double *other = factor + (size_t)j * n;
-            row[j] = (a[(size_t)i * n + j] - dot(row, other, j)) * other[j];
+    enum { WIDE = 4 * LANES };
+    for (int k = 0; k < n; k++) {
+        double *row = factor + (size_t)k * n;
+        // The row less all rows above: as many columns at once as fit the processor's registers.
+        for (int j = k; j < n; j += WIDE) {
+            int count = n - j < WIDE ? n - j : WIDE;
+            if (count == WIDE) {
+                vec sum[4];
+                memcpy(sum, a + (size_t)k * n + j, sizeof sum);
+                for (int i = 0; i < k; i++) {
+                    const double *above = factor + (size_t)i * n;
+                    vec other[4], share = spread(above[k]);
+                    memcpy(other, above + j, sizeof other);
+#pragma GCC unroll 4
+                    for (int v = 0; v < 4; v++) sum[v] -= share * other[v];
+                }
+                memcpy(row + j, sum, sizeof sum);
+            } else {
+                memcpy(row + j, a + (size_t)k * n + j, count * sizeof(double));
+                for (int i = 0; i < k; i++) {
+                    const double *above = factor + (size_t)i * n;
+                    for (int c = 0; c < count; c++) row[j + c] -= above[k] * above[j + c];
+                }
+            }
         }
-        double pivot = a[(size_t)i * n + i] + shift - dot(row, row, i);
+        double pivot = row[k] + shift;
         if (!(pivot > 0.0) || !isfinite(pivot)) return 0;
-        row[i] = 1.0 / sqrt(pivot);  // the diagonal is kept inverted
+        double scale = 1.0 / sqrt(pivot);
+        for (int j = k + 1; j < n; j++) row[j] *= scale;
+        row[k] = scale;  // the diagonal is kept inverted
     }
     return 1;
 }
 
-static void back_substitute(const double *factor, double *x, int n) {
+static void back_substitute(const double *restrict factor, double *restrict x, int n) {
     for (int i = 0; i < n; i++) {
         const double *row = factor + (size_t)i * n;
-        x[i] = (x[i] - dot(row, x, i)) * row[i];
+        double value = x[i] *= row[i];
+        for (int j = i + 1; j < n; j++) x[j] -= row[j] * value;
     }
     for (int i = n - 1; i >= 0; i--) {
         const double *row = factor + (size_t)i * n;
-        x[i] *= row[i];
-        for (int j = 0; j < i; j++) x[j] -= row[j] * x[i];
+        x[i] = (x[i] - dot(row + i + 1, x + i + 1, n - i - 1)) * row[i];
     }
 }
 

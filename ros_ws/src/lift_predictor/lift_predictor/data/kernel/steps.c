@@ -57,7 +57,7 @@ static int factorise(struct solver *s) {
             for (int i = 0; i < n; i++) {
                 double factor = s->convexify * row[i];
                 if (factor != 0.0)
-                    for (int j = 0; j <= i; j++) s->matrix[(size_t)i * n + j] += factor * row[j];
+                    for (int j = i; j < n; j++) s->matrix[(size_t)i * n + j] += factor * row[j];
             }
         }
     if (!cholesky(s->matrix, 0.0, s->factor, n)) {
@@ -76,7 +76,7 @@ static int factorise(struct solver *s) {
     double most = 1e-300;
     for (int k = 0; k < q; k++)
         for (int l = 0; l <= k; l++)
-            s->eq_work[(size_t)k * q + l] =
+            s->eq_work[(size_t)l * q + k] =
                 dot(s->equality + (size_t)k * n, s->inner + (size_t)l * n, n);
     for (int k = 0; k < q; k++) most = larger(most, fabs(s->eq_work[(size_t)k * q + k]));
     double shift = 0.0;
