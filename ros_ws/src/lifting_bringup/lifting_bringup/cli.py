@@ -107,6 +107,9 @@ def _parser() -> argparse.ArgumentParser:
     report = commands.add_parser('report', help='write the report of a results file')
     report.add_argument('results', type=Path, help='results.mcap of a run')
     report.add_argument('--output', type=Path, help='HTML file (default: beside the results)')
+    report.add_argument(
+        '--recording', type=Path, help='the recording it came from; adds its EMG, if it has any'
+    )
     report.set_defaults(handler=_report)
 
     compare_command.add_to(commands)
@@ -165,7 +168,7 @@ def _run(options: argparse.Namespace) -> int:
     from lifting_bringup.results import RunFacts, write_report
     from lifting_bringup.session import summarise
 
-    facts = RunFacts(run, options.bag.name, summarise(options.bag).start)
+    facts = RunFacts(run, options.bag.name, summarise(options.bag).start, options.bag)
     page = write_report(results, output / 'report.html', facts)
     print(f'results {results}')
     print(f'report  {page} ({time.monotonic() - began:.1f} s)')
@@ -268,10 +271,14 @@ def _import(options: argparse.Namespace) -> int:
 
 
 def _report(options: argparse.Namespace) -> int:
-    from lifting_bringup.results import write_report
+    from lifting_bringup.results import RunFacts, write_report
+    from lifting_bringup.session import summarise
 
     output = options.output or options.results.with_name('report.html')
-    page = write_report(options.results, output)
+    bag = options.recording
+    facts = RunFacts() if bag is None else RunFacts(
+        recording=bag.name, start=summarise(bag).start, bag=bag)  # fmt: skip
+    page = write_report(options.results, output, facts)
     print(page)
     return 0
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""The EMG of a recording as one table, from the blocks of its topic `emg`."""
+"""The EMG of a recording, from the blocks of its topic `emg`, and beside a lift's activations."""
 
 from __future__ import annotations
 
@@ -12,13 +12,70 @@ import numpy as np
 
 from lifting_bringup.bags.exceptions import UnreadableBagError
 from lifting_bringup.bags.reader import BagReader
-from muscle_analyzer.core.emg import EmgRecording
+from lifting_bringup.report.data import Activations, EmgFindings, Missing
+from muscle_analyzer.core.emg import EmgRecording, normalised_envelopes
+from muscle_analyzer.core.emg_comparison import (
+    LiftActivations,
+    match_envelopes,
+    muscle_of_channel,
+)
+from muscle_analyzer.core.exceptions import EmgError
 
 TOPIC = 'emg'
 _RATE = re.compile(r'^samples, (?P<rate>[0-9.e+]+) Hz$')
 _CHANNEL = re.compile(r'^(?P<name>.*) \[(?P<unit>.*)\]$')
 #: A block may begin so far from where the one before ends, as a share of a sampling interval.
 _GAP = 0.5
+
+
+def has_emg(bag: Path) -> bool:
+    """Return whether a recording has the topic of EMG."""
+    with BagReader(bag) as reader:
+        return any(name.strip('/') == TOPIC for name in reader.topics)
+
+
+def emg_of_lift(
+    emg: EmgRecording, lift_id: str, activations: Activations | Missing, start: float
+) -> EmgFindings | Missing:
+    """Lay the EMG of a recording beside the activations of one of its lifts.
+
+    Channels are understood by their names; one that names no muscle and side is left out and
+    said. No MVC is known here: each channel is divided by its maximum in the recording.
+
+    Parameters
+    ----------
+    emg : EmgRecording
+    lift_id : str
+    activations : Activations or Missing
+        Of the recorded lift.
+    start : float
+        Start of the lift on the clock of the EMG [s].
+    """
+    if isinstance(activations, Missing):
+        return Missing(f'no computed activations to lay the EMG beside: {activations.reason}')
+    known, left_out = [], []
+    for k, channel in enumerate(emg.channels):
+        try:
+            muscle_of_channel(channel)
+        except EmgError as error:
+            left_out.append(str(error))
+        else:
+            known.append(k)
+    if not known:
+        return EmgFindings((), tuple(left_out))
+    chosen = EmgRecording(
+        tuple(emg.channels[k] for k in known), tuple(emg.units[k] for k in known), emg.time,
+        emg.values[:, known],
+    )  # fmt: skip
+    lift = LiftActivations(
+        lift_id, activations.time + start, activations.muscles, activations.activation,
+        activations.solved,
+    )  # fmt: skip
+    try:
+        matches = match_envelopes(normalised_envelopes(chosen), lift)
+    except EmgError as error:
+        return Missing(str(error))
+    return EmgFindings(matches, tuple(left_out))
 
 
 def recorded_emg(bag: Path, start: float) -> EmgRecording:

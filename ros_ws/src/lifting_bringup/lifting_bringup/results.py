@@ -19,6 +19,8 @@ from lift_predictor.core.exceptions import LiftPredictorError
 from lift_predictor.core.sagittal.person import Person
 from lifting_bringup import __version__
 from lifting_bringup import results_curves as curves
+from lifting_bringup.bags.exceptions import BagError
+from lifting_bringup.recorded_emg import emg_of_lift, has_emg, recorded_emg
 from lifting_bringup.report.assessed import lifting_from_assessment, risk_from_assessment
 from lifting_bringup.report.data import (
     AlarmRow,
@@ -42,6 +44,7 @@ from lifting_bringup.results_file import (
     seconds,
 )
 from lifting_node.conversions import subject_from_msg
+from muscle_analyzer.core.emg import EmgRecording
 
 #: Stages whose solve reports are shown: name, topic, source.
 _STAGES = (
@@ -65,11 +68,14 @@ class RunFacts:
         Name of the recording.
     start : float
         Stamp of the start of the recording [s]; NaN: the first live sample.
+    bag : Path or None
+        The recording itself, for what the graph does not read: its EMG.
     """
 
     run: str = 'not stated'
     recording: str = 'not stated'
     start: float = math.nan
+    bag: Path | None = None
 
 
 def write_report(results: Path, page: Path, facts: RunFacts | None = None) -> Path:
@@ -87,8 +93,9 @@ def report_data(results: Results, facts: RunFacts) -> ReportData:
         person = Person.of(subject_from_msg(results.subject))
     except (HumanModelError, LiftPredictorError) as error:
         person = Missing(f'the subject of the results file is refused: {error}')
+    emg = _emg(facts.bag, results.start)
     lifts = tuple(
-        _lift(lift_id, entry, results, person)
+        _with_emg(_lift(lift_id, entry, results, person), emg)
         for lift_id, entry in results.lifts.items()
         if 'measured_lift' in entry.single
     )
@@ -104,6 +111,23 @@ def report_data(results: Results, facts: RunFacts) -> ReportData:
         recording_quality=_recording_quality(results),
         remarks=tuple(remarks),
     )
+
+
+def _emg(bag: Path | None, start: float) -> EmgRecording | Missing | None:
+    """Return the EMG of a recording on its clock; None where there is none."""
+    if bag is None or not has_emg(bag):
+        return None
+    try:
+        return recorded_emg(bag, start)
+    except BagError as error:
+        return Missing(str(error))
+
+
+def _with_emg(lift: LiftReport, emg: EmgRecording | Missing | None) -> LiftReport:
+    if emg is None or isinstance(emg, Missing):
+        return replace(lift, emg=emg)
+    found = emg_of_lift(emg, lift.lift_id, lift.activations.measured, lift.start)
+    return replace(lift, emg=found)
 
 
 def _header(results: Results, facts: RunFacts) -> Header:

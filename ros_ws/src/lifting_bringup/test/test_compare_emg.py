@@ -15,8 +15,9 @@ from lifting_bringup.bags.importer import _emg_stream
 from lifting_bringup.bags.reader import BagReader
 from lifting_bringup.bags.recording import Analog
 from lifting_bringup.cli import main
-from lifting_bringup.recorded_emg import recorded_emg
+from lifting_bringup.recorded_emg import emg_of_lift, recorded_emg
 from lifting_bringup.recorded_lifts import recorded_lifts
+from lifting_bringup.report.data import Activations, Missing
 from muscle_analyzer.core.analyzer import MuscleAnalyzer
 
 BAG = Path(__file__).resolve().parents[4] / 'bags' / 'symmetric_7kg'
@@ -147,3 +148,40 @@ def test_options_that_say_nothing_are_refused(words, capsys):
     with pytest.raises(SystemExit):
         main(['compare-emg', str(BAG), *words])
     assert words[1] in capsys.readouterr().err
+
+
+@pytest.fixture(scope='module')
+def run_with_emg(bag_with_emg, tmp_path_factory):
+    """Return the folder of an offline run of the recording with EMG."""
+    output = tmp_path_factory.mktemp('run')
+    assert main(['run', str(bag_with_emg), '--offline', '--output', str(output)]) == 0
+    return output
+
+
+def test_report_of_a_run_shows_the_emg_of_its_recording(run_with_emg, bag_with_emg, tmp_path):
+    page = (run_with_emg / 'report.html').read_text(encoding='utf-8')
+    section = page.partition('EMG beside the computed activations')[2]
+    assert 'Vastus medialis, left' in section
+    # EMG1 names no muscle: it is left out, and the page says so.
+    assert 'Not compared: EMG channel &#x27;EMG1&#x27; names no muscle and side' in section
+    shown = re.search(r'<td>VML</td>.*?([−\d]+)&#8239;ms', section)
+    assert float(shown[1].replace('−', '-')) == pytest.approx(1e3 * EARLY, abs=20.0)
+    again = tmp_path / 'again.html'
+    results = str(run_with_emg / 'results.mcap')
+    recording = ['--recording', str(bag_with_emg)]
+    assert main(['report', results, '--output', str(again), *recording]) == 0
+    assert f'{shown[1]}&#8239;ms' in again.read_text(encoding='utf-8')
+    assert main(['report', results, '--output', str(again)]) == 0
+    assert 'EMG beside' not in again.read_text(encoding='utf-8')
+
+
+def test_emg_that_cannot_be_compared_gives_the_reason(bag_with_emg):
+    start = recorded_lifts(bag_with_emg).start
+    emg = recorded_emg(bag_with_emg, start)
+    time = np.linspace(0.0, 1.0, 50)
+    there = Activations(time, ('vasmed_l',), np.zeros((50, 1)), np.ones(50, bool))
+    found = emg_of_lift(emg, 'lift_9', there, 1e4)
+    assert "lift 'lift_9'" in found.reason
+    assert 'is not within the EMG' in found.reason
+    gone = emg_of_lift(emg, 'lift_9', Missing('it died'), 0.0)
+    assert gone.reason == 'no computed activations to lay the EMG beside: it died'

@@ -18,6 +18,7 @@ from lifting_bringup.report.exceptions import ReportError
 from lifting_bringup.report.findings import (
     AlarmRow,
     CriterionRow,
+    EmgFindings,
     Lifting,
     QualityRow,
     Risk,
@@ -31,6 +32,7 @@ __all__ = [
     'BodyPoints',
     'Comparison',
     'CriterionRow',
+    'EmgFindings',
     'GroundForces',
     'Header',
     'JointAngles',
@@ -323,6 +325,8 @@ class LiftReport:
         Since the start of the recording [s].
     duration : float
         [s].
+    emg : EmgFindings, Missing or None
+        None: the recording has no EMG, or it is not known which recording it was.
     """
 
     lift_id: str
@@ -340,6 +344,7 @@ class LiftReport:
     lifting: Lifting | Missing
     solves: tuple[SolveRow, ...] | Missing
     quality: tuple[QualityRow, ...] | Missing
+    emg: EmgFindings | Missing | None = None
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from lifting_bringup.report.curves import percent
-from lifting_bringup.report.html_parts import amount, figure, table, text
+from lifting_bringup.report.findings import EmgFindings
+from lifting_bringup.report.html_parts import absent, amount, figure, table, text
 from lifting_bringup.report.page_style import CSS
 from lifting_bringup.report.style import (
     DASHES,
@@ -40,21 +41,9 @@ def build_emg_page(matches: Sequence[EmgMatch], title: str, path: Path) -> Path:
     path : Path
         Of the HTML file.
     """
-    caption = (
-        'EMG: band-pass 10 to 450 Hz, rectified, low-pass 5 Hz, without delay, as a share of the '
-        'maximum voluntary contraction or else of the maximum of the recording. Computed: mean '
-        'activation of the parts of the muscle in the model. No co-contraction is computed beyond '
-        'what balance needs.'
-    )
-    head = ('channel', 'muscle', 'side', 'EMG is a share of', 'correlation', 'phase error',
-            'of the lift', 'correlation then', 'rms', '')  # fmt: skip
     body = (
         f'<h1>EMG and activations</h1><p class="lead">{text(title)}</p>'
-        + figure('Envelope of the EMG and computed activation', curves(matches), caption)
-        + table(head, [_row(match) for match in matches], (4, 5, 6, 7, 8))
-        + '<p class="note">Phase error: shift of the activation against the EMG at which both '
-        'correlate best, positive if the activation is later. The rms says something only where '
-        'an MVC was given.</p>'
+        + emg_part(EmgFindings(tuple(matches)), 'emg')
     )
     page = (
         '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8">'
@@ -67,7 +56,31 @@ def build_emg_page(matches: Sequence[EmgMatch], title: str, path: Path) -> Path:
     return path
 
 
-def curves(matches: Sequence[EmgMatch]) -> str:
+def emg_part(findings: EmgFindings, name: str) -> str:
+    """Return figure and table of a lift's EMG as HTML; `name` makes ids unique."""
+    caption = (
+        'EMG: band-pass 10 to 450 Hz, rectified, low-pass 5 Hz, without delay, as a share of the '
+        'maximum voluntary contraction or else of the maximum of the recording. Computed: mean '
+        'activation of the parts of the muscle in the model. No co-contraction is computed beyond '
+        'what balance needs.'
+    )
+    head = ('channel', 'muscle', 'side', 'EMG is a share of', 'correlation', 'phase error',
+            'of the lift', 'correlation then', 'rms', '')  # fmt: skip
+    left_out = ''.join(f'<p class="note">Not compared: {text(why)}</p>'
+                       for why in findings.left_out)  # fmt: skip
+    matches = findings.matches
+    if not matches:
+        return absent('EMG', 'no channel could be compared') + left_out
+    return (
+        figure('Envelope of the EMG and computed activation', curves(matches, name), caption)
+        + table(head, [_row(match) for match in matches], (4, 5, 6, 7, 8))
+        + '<p class="note">Phase error: shift of the activation against the EMG at which both '
+        'correlate best, positive if the activation is later. The rms says something only where '
+        'an MVC was given.</p>' + left_out
+    )
+
+
+def curves(matches: Sequence[EmgMatch], name: str) -> str:
     """Draw a panel a channel, over the course of the lift."""
     lines = math.ceil(len(matches) / _COLUMNS)
     with figure_style():
@@ -85,7 +98,7 @@ def curves(matches: Sequence[EmgMatch]) -> str:
             percent_axis(axes, k + _COLUMNS >= len(matches))
         figure_legend(drawing, panels[0])
         names = ', '.join(f'{m.muscle} {SIDES[m.side]}' for m in matches)
-        return to_svg(drawing, 'emg', f'EMG and computed activation of {names}')
+        return to_svg(drawing, name, f'EMG and computed activation of {names}')
 
 
 def _row(match: EmgMatch) -> list[str]:

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from muscle_analyzer.core.emg_comparison import EmgMatch
+
 
 @dataclass(frozen=True)
 class CriterionRow:
@@ -120,3 +122,19 @@ class QualityRow:
     predicted: float
     unit: str
     meaning: str
+
+
+@dataclass(frozen=True)
+class EmgFindings:
+    """EMG of a lift beside its computed activations.
+
+    Attributes
+    ----------
+    matches : tuple of EmgMatch
+        One for each channel that could be compared.
+    left_out : tuple of str
+        Why other channels could not.
+    """
+
+    matches: tuple[EmgMatch, ...]
+    left_out: tuple[str, ...] = ()

@@ -11,6 +11,7 @@ from typing import Any
 from injury_monitor.core.lifting_equation import lifting_index_band
 from lifting_bringup.report import curves, joint_peaks, loads, stick_figures
 from lifting_bringup.report.data import CriterionRow, Header, LiftReport, Missing, Pair, Risk
+from lifting_bringup.report.emg_page import emg_part
 from lifting_bringup.report.html_parts import (
     Card,
     absent,
@@ -159,7 +160,7 @@ def lift_figures(lift: LiftReport, header: Header, name: str) -> str:
         _drawn('Torque index', lift.torques,
                lambda: curves.torque_indices(lift.torques, f'{name}-index'),
                'Torque over dynamic strength in its direction (eq. 4.12 of the dissertation).'),
-        _muscles(lift, name)]
+        _muscles(lift, name), _emg(lift, name)]
     return ''.join(parts)
 
 
@@ -178,6 +179,16 @@ def _muscles(lift: LiftReport, name: str) -> str:
         lambda: loads.muscle_activations(lift.activations, f'{name}-muscles'),
         'Share of the strength of the muscle in use. Thick: mean over all fascicles of both '
         'sides; thin: the most active fascicle. Gaps: samples that did not solve.')
+
+
+def _emg(lift: LiftReport, name: str) -> str:
+    """Return the section of the EMG; nothing where none was recorded."""
+    if lift.emg is None:
+        return ''
+    title = '<h3>EMG beside the computed activations</h3>'
+    if isinstance(lift.emg, Missing):
+        return title + absent('EMG', lift.emg.reason)
+    return title + emg_part(lift.emg, f'{name}-emg')
 
 
 def _limits(lift: LiftReport) -> tuple[tuple[LimitLine, ...], tuple[LimitLine, ...]]:

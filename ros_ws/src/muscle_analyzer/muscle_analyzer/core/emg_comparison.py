@@ -105,6 +105,36 @@ class EmgMatch:
     note: str
 
 
+@dataclass(frozen=True, eq=False)
+class LiftActivations:
+    """Muscle activations over a lift, wherever they come from.
+
+    Attributes
+    ----------
+    lift_id : str
+    time : (n,) array
+        s, on the clock of the EMG.
+    muscle_names : tuple of str
+    activation : (n, n_m) array
+    good : (n,) array of bool
+        Samples whose muscle forces are good data.
+    """
+
+    lift_id: str
+    time: Array
+    muscle_names: tuple[str, ...]
+    activation: Array
+    good: NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, analysis: MuscleAnalysis) -> LiftActivations:
+        """Give those of an analysis."""
+        good = np.array([report.ok for report in analysis.reports])
+        return cls(
+            analysis.lift_id, analysis.time, analysis.muscle_names, analysis.activation, good
+        )
+
+
 @cache
 def emg_muscles() -> tuple[EmgMuscle, ...]:
     """Return the rows of `data/emg_channels.csv`."""
@@ -158,14 +188,23 @@ def compare_emg(
     analysis: MuscleAnalysis,
     channels: Mapping[str, str] | None = None,
 ) -> tuple[EmgMatch, ...]:
+    """Compare every channel with an analysis of a lift; see `match_envelopes`."""
+    return match_envelopes(envelopes, LiftActivations.of(analysis), channels)
+
+
+def match_envelopes(
+    envelopes: Envelopes,
+    lift: LiftActivations,
+    channels: Mapping[str, str] | None = None,
+) -> tuple[EmgMatch, ...]:
     """Compare every channel with the activation of its muscle over a lift.
 
     Parameters
     ----------
     envelopes : Envelopes
         Longer than the lift, so that shifted envelopes are known.
-    analysis : MuscleAnalysis
-        Of the lift; samples whose muscle forces are not good data are left out.
+    lift : LiftActivations
+        Samples whose muscle forces are not good data are left out.
     channels : mapping of str to str, optional
         In place of a channel's own name, one that says muscle and side.
 
@@ -179,23 +218,22 @@ def compare_emg(
         raise EmgError(
             f'{unknown[0]!r}: no such EMG channel; channels: {", ".join(envelopes.channels)}'
         )
-    good = np.array([report.ok for report in analysis.reports])
-    good &= np.isfinite(analysis.activation).all(axis=1)
-    time = analysis.time[good]
+    good = lift.good & np.isfinite(lift.activation).all(axis=1)
+    time = lift.time[good]
     if time.size < 3:
-        raise EmgError(f'lift {analysis.lift_id!r}: {time.size} good samples to compare with EMG')
+        raise EmgError(f'lift {lift.lift_id!r}: {time.size} good samples to compare with EMG')
     if time[0] < envelopes.time[0] or time[-1] > envelopes.time[-1]:
         raise EmgError(
-            f'lift {analysis.lift_id!r}, {time[0]:.3f} to {time[-1]:.3f} s, is not within the '
+            f'lift {lift.lift_id!r}, {time[0]:.3f} to {time[-1]:.3f} s, is not within the '
             f'EMG, {envelopes.time[0]:.3f} to {envelopes.time[-1]:.3f} s'
         )
-    duration = float(analysis.time[-1] - analysis.time[0])
+    duration = float(lift.time[-1] - lift.time[0])
     found = []
     for k, channel in enumerate(envelopes.channels):
         muscle, side = muscle_of_channel(channels.get(channel, channel))
-        parts = parts_of(muscle, side, analysis.muscle_names)
-        columns = [analysis.muscle_names.index(name) for name in parts]
-        activation = analysis.activation[good][:, columns].mean(axis=1)
+        parts = parts_of(muscle, side, lift.muscle_names)
+        columns = [lift.muscle_names.index(name) for name in parts]
+        activation = lift.activation[good][:, columns].mean(axis=1)
         envelope = np.interp(time, envelopes.time, envelopes.values[:, k])
         lag, best, note = _best_lag(
             time, activation, envelopes.time, envelopes.values[:, k], LARGEST_LAG * duration
