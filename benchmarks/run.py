@@ -1,9 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Measure what the README says: `make bench`, or `python benchmarks/run.py --only sagittal cold`.
+"""Measure what the README says: `make bench`, or `python benchmarks/run.py --only cold muscle`.
 
 Each benchmark is a module with a function `run()` that returns its figures by name. They are
-written to `results/predictor.json` and printed beside their targets and the dissertation's times.
+written to `results/predictor.json` and `results/muscle.json`, and printed beside their targets and
+the dissertation's times.
 Run on a machine that does nothing else: the load average is written down with the figures.
 """
 
@@ -15,11 +16,14 @@ import json
 import os
 import sys
 import time
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
 ROOT: Final = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
+
+from benchmarks.targets import TARGETS  # noqa: E402 (the repository is no package)
+
 RESULTS: Final = ROOT / 'benchmarks' / 'results'
 ONE_THREAD: Final = ('OMP_NUM_THREADS', 'OPENBLAS_NUM_THREADS', 'NUMBA_NUM_THREADS')
 
@@ -32,54 +36,20 @@ SUITES: Final[dict[str, dict[str, str]]] = {
         'infeasible': 'benchmarks.predictor_infeasible',
         'random': 'benchmarks.predictor_random',
     },
-    'muscle': {'muscle': 'benchmarks.muscle'},
+    'muscle': {
+        'frame': 'benchmarks.muscle',
+        'chain': 'benchmarks.muscle_chain',
+        'stations': 'benchmarks.muscle_stations',
+    },
 }
 """Result file and its benchmarks, quick ones first."""
-
-
-@dataclass(frozen=True)
-class Target:
-    """What a figure should be, and the dissertation's value (None: it has none)."""
-
-    least: float | None = None
-    most: float | None = None
-    dissertation: float | None = None
-
-    def met(self, value: float) -> bool:
-        """Whether a value reaches the target."""
-        low = self.least is None or value >= self.least
-        return low and (self.most is None or value <= self.most)
-
-    def __str__(self) -> str:
-        """In words."""
-        if self.least is not None and self.least == self.most:
-            return f'{self.least:g}'
-        return f'>= {self.least:g}' if self.least is not None else f'<= {self.most:g}'
-
-
-TARGETS: Final[dict[str, Target]] = {
-    '2d_fixed_7kg_ms': Target(most=5.0, dissertation=480.0),
-    '2d_fixed_12kg_ms': Target(most=5.0, dissertation=620.0),
-    '2d_max_ms': Target(most=5.0, dissertation=3340.0),
-    '2d_warm_hz': Target(least=500.0),
-    '3d_fixed_s': Target(most=0.4, dissertation=42.0),
-    '3d_max_s': Target(most=0.5, dissertation=72.8),
-    '3d_warm_hz': Target(least=10.0),
-    'random2d_solved': Target(least=200.0, most=200.0),
-    'random2d_best_within_0_1pct': Target(least=195.0),
-    'random3d_solved': Target(least=100.0, most=100.0),
-    'dense_grid_violations': Target(least=0.0, most=0.0),
-    'infeasible_detected': Target(least=50.0, most=50.0),
-    'pareto_252_solves_s': Target(most=10.0),
-    'cold_process_s': Target(most=0.5),
-}
 
 
 def measure(suite: str, only: list[str]) -> dict[str, float]:
     """Run the benchmarks of a suite; those whose module does not exist are left out, and said."""
     figures: dict[str, float] = {}
     for name, module in SUITES[suite].items():
-        if only and name not in only:
+        if only and name not in only and suite not in only:
             continue
         if not (ROOT / f'{module.replace(".", "/")}.py').exists():
             print(f'{name}: no {module}')
@@ -112,36 +82,36 @@ def write(suite: str, figures: dict[str, float], whole: bool) -> Path:
     return path
 
 
-def table(figures: dict[str, float]) -> str:
-    """Table of the figures that have a target, with IPOPT's beside them."""
+def table(suite: str, figures: dict[str, float]) -> str:
+    """Table of the figures that have a target, with IPOPT's beside them, then of the others."""
+    targets = TARGETS[suite]
     lines = [f'{"":30}{"measured":>12}{"IPOPT":>12}{"target":>12}{"dissertation":>14}']
-    for key, target in TARGETS.items():
+    for key, target in targets.items():
         if key not in figures:
             continue
         ipopt = f'{figures[f"ipopt_{key}"]:.4g}' if f'ipopt_{key}' in figures else ''
         old = f'{target.dissertation:g}' if target.dissertation is not None else ''
         mark = '' if target.met(figures[key]) else '  missed'
         lines.append(f'{key:30}{figures[key]:12.4g}{ipopt:>12}{target!s:>12}{old:>14}{mark}')
-    others = [k for k in figures if k not in TARGETS and k.removeprefix('ipopt_') not in TARGETS]
+    others = [k for k in figures if k not in targets and k.removeprefix('ipopt_') not in targets]
     lines += [f'{key:30}{figures[key]:12.4g}' for key in others]
     return '\n'.join(lines)
 
 
 def main() -> int:
     """Run what is asked for; return the exit code."""
-    names = [name for suite in SUITES.values() for name in suite]
+    names = [*SUITES, *(name for suite in SUITES.values() for name in suite)]
     parser = argparse.ArgumentParser(description='Speed and accuracy figures.')
     parser.add_argument('--only', nargs='+', choices=names, default=[], metavar='NAME',
                         help=f'of {", ".join(names)}')  # fmt: skip
     only = parser.parse_args().only
     for name in ONE_THREAD:
         os.environ[name] = '1'
-    sys.path.insert(0, str(ROOT))
     for suite in SUITES:
         figures = measure(suite, only)
         if figures:
             path = write(suite, figures, not only)
-            print(table(figures))
+            print(table(suite, figures))
             print(f'written to {path.relative_to(ROOT)}')
     return 0
 

@@ -22,7 +22,7 @@ from muscle_analyzer.core.muscle_paths import muscle_paths
 from muscle_analyzer.core.opensim import setup_files as files
 from muscle_analyzer.core.opensim.answers import read_opensim
 from muscle_analyzer.core.opensim.compare import compare
-from muscle_analyzer.core.opensim.export import export_motion
+from muscle_analyzer.core.opensim.export import ExportOptions, export_motion
 from muscle_analyzer.core.opensim.motion_on_model import MotionOnModel
 from muscle_analyzer.core.opensim.own_side import OwnSide
 from muscle_analyzer.core.opensim.process import find_opensim, run_referee
@@ -89,6 +89,22 @@ def test_muscle_and_reserves_balance_the_torques_of_a_pendulum(swing):
         torque = answer.moment_arm[i].T @ answer.force[i] + answer.reserve[i]
         np.testing.assert_allclose(torque, answer.torque[k], atol=2e-3)
         np.testing.assert_allclose(answer.force[i], strength * answer.activation[i], rtol=1e-6)
+
+
+def test_all_instants_in_one_run_of_each_tool_as_well(swing, opensim, tmp_path):
+    """The set-ups lead to every tenth sample; the answer is the same as of runs apart."""
+    motion = swing.motion
+    names, coordinates = ('flexor',), motion.model.coordinate_names
+    rows = np.array([10, 20, 30])
+    answers = []
+    for together in (False, True):
+        folder = tmp_path / f'together_{together}'
+        export_motion(folder, motion, ExportOptions(samples_per_solution=10))
+        run_referee(opensim, folder, motion.time[rows], print, together)
+        answers.append(read_opensim(folder, motion, names, coordinates, rows).answer)
+    for field in ('force', 'reserve', 'reaction', 'moment_arm'):
+        apart, one = (getattr(answer, field) for answer in answers)
+        np.testing.assert_allclose(one, apart, atol=1e-3)
 
 
 def test_a_folder_without_its_model_fails_with_opensims_words(swing, opensim):

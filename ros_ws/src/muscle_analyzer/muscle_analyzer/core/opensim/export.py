@@ -40,10 +40,13 @@ class ExportOptions:
         Of the activations in the cost.
     physiology : bool
         Whether muscle force depends on the fibre's length and velocity.
+    samples_per_solution : int
+        One sample in so many is solved by the set-ups for the whole motion.
     """
 
     exponent: float = 2.0
     physiology: bool = False
+    samples_per_solution: int = SAMPLES_PER_SOLUTION
 
 
 def export_motion(
@@ -75,7 +78,7 @@ def export_motion(
     options = options or ExportOptions()
     folder.mkdir(parents=True, exist_ok=True)
     start, end = float(motion.time[0]), float(motion.time[-1])
-    step = SAMPLES_PER_SOLUTION
+    step = options.samples_per_solution
     write_osim(folder / files.MODEL, motion.model.source, motion.meshes)
     write_storage(folder / files.COORDINATES, coordinates_storage(motion))
     write_storage(folder / files.LOADS_DATA, loads_storage(motion))

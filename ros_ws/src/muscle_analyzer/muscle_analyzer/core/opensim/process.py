@@ -93,7 +93,11 @@ def find_opensim(
 
 
 def run_referee(
-    python: OpenSimPython, folder: Path, times: Array, say: Callable[[str], None]
+    python: OpenSimPython,
+    folder: Path,
+    times: Array,
+    say: Callable[[str], None],
+    together: bool = False,
 ) -> None:
     """Run OpenSim's tools on an exported folder; everything that they print goes to a log there.
 
@@ -106,6 +110,10 @@ def run_referee(
         At which static optimisation and joint reactions are wanted, s.
     say : callable
         Takes a line when an instant is done.
+    together : bool
+        Whether each tool runs once from the first time to the last, which must be those of the
+        samples whose numbers are multiples of the export's `samples_per_solution`; otherwise it
+        runs at each time apart.
 
     Raises
     ------
@@ -116,6 +124,7 @@ def run_referee(
     log = folder / 'referee.log'
     command = [str(python.path), '-I', str(script), str(folder.absolute()), '--at']
     command += [f'{time:.17g}' for time in times]
+    command += ['--together'] if together else []
     limit = _START_TIME + _INSTANT_TIME * times.size
     with log.open('w', encoding='utf-8') as out:
         process = subprocess.Popen(

@@ -9,8 +9,9 @@ a process of its own because OpenSim and CasADi ship different libraries of one 
     python referee.py FOLDER --at 0.5 0.8
 
 The set-ups in the folder are run as they are: inverse dynamics of the whole motion, static
-optimisation and joint reactions at the given times only. Results go to the folder's `results`,
-path lengths and moment arms to `results/referee.json`.
+optimisation and joint reactions at the given times only, each in a run of its own or, with
+`--together`, in one run from the first to the last. Results go to the folder's `results`, path
+lengths and moment arms to `results/referee.json`.
 """
 
 from __future__ import annotations
@@ -66,15 +67,40 @@ def run(tool: Any, what: str) -> None:
         raise RuntimeError(f'OpenSim: {what} failed')
 
 
-def analyze(opensim: Any, setup: str, at: float, place: Path) -> float:
-    """Run an AnalyzeTool at one instant into a folder; return the seconds it took."""
+def analyze(opensim: Any, setup: str, start: float, end: float, place: Path) -> float:
+    """Run an AnalyzeTool from start to end into a folder; return the seconds it took."""
     tool = opensim.AnalyzeTool(setup)
-    tool.setInitialTime(at)
-    tool.setFinalTime(at)
+    tool.setInitialTime(start)
+    tool.setFinalTime(end)
     tool.setResultsDir(str(place))
     began = time.perf_counter()
-    run(tool, f'{setup} at {at:.6g} s')
+    run(tool, f'{setup} from {start:.6g} to {end:.6g} s')
     return time.perf_counter() - began
+
+
+def solve_apart(opensim: Any, times: list[float], results: Path) -> dict[str, list[float]]:
+    """Run both tools at each time apart; return the seconds of each run."""
+    seconds: dict[str, list[float]] = {'static_optimization': [], 'joint_reaction': []}
+    places = [results / f'instant_{k}' for k in range(len(times))]
+    for at, place in zip(times, places, strict=True):
+        seconds['static_optimization'].append(
+            analyze(opensim, STATIC_OPTIMIZATION, at, at, place)
+        )
+        print(f'{at:.3f} s solved', flush=True)
+    for name in (FORCES, ACTIVATIONS):
+        joined([place / name for place in places], results / name)
+    for at, place in zip(times, places, strict=True):
+        seconds['joint_reaction'].append(analyze(opensim, JOINT_REACTION, at, at, place))
+    joined([place / REACTIONS for place in places], results / REACTIONS)
+    return seconds
+
+
+def solve_together(opensim: Any, times: list[float], results: Path) -> dict[str, list[float]]:
+    """Run both tools once over all times, to which the set-ups' step leads."""
+    window = (times[0], times[-1], results)
+    seconds = {'static_optimization': [analyze(opensim, STATIC_OPTIMIZATION, *window)]}
+    print(f'{times[0]:.3f} to {times[-1]:.3f} s solved', flush=True)
+    return seconds | {'joint_reaction': [analyze(opensim, JOINT_REACTION, *window)]}
 
 
 def coupled(opensim: Any, model: Any) -> set[str]:
@@ -124,6 +150,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('folder', type=Path)
     parser.add_argument('--at', type=float, nargs='+', required=True, metavar='SECONDS')
+    parser.add_argument('--together', action='store_true')
     arguments = parser.parse_args()
     opensim = importlib.import_module('opensim')
     opensim.Logger.setLevelString('Warn')
@@ -131,20 +158,12 @@ def main() -> int:
     os.chdir(arguments.folder)
     results = Path(RESULTS)
     results.mkdir(exist_ok=True)
-    seconds: dict[str, list[float]] = {'static_optimization': [], 'joint_reaction': []}
 
     began = time.perf_counter()
     run(opensim.InverseDynamicsTool(INVERSE_DYNAMICS), 'inverse dynamics')
-    seconds['inverse_dynamics'] = [time.perf_counter() - began]
-    places = [results / f'instant_{k}' for k in range(len(arguments.at))]
-    for at, place in zip(arguments.at, places, strict=True):
-        seconds['static_optimization'].append(analyze(opensim, STATIC_OPTIMIZATION, at, place))
-        print(f'{at:.3f} s solved', flush=True)
-    for name in (FORCES, ACTIVATIONS):
-        joined([place / name for place in places], results / name)
-    for at, place in zip(arguments.at, places, strict=True):
-        seconds['joint_reaction'].append(analyze(opensim, JOINT_REACTION, at, place))
-    joined([place / REACTIONS for place in places], results / REACTIONS)
+    seconds = {'inverse_dynamics': [time.perf_counter() - began]}
+    solve = solve_together if arguments.together else solve_apart
+    seconds |= solve(opensim, arguments.at, results)
     answer = {
         'opensim': opensim.GetVersion(),
         'times': arguments.at,

@@ -1,0 +1,236 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Graphs of real node processes with a player each, and the time their frames take.
+
+The latency of a frame begins when the player's middleware is handed its `markers` message and ends
+when the monitor's word on it has reached another process: DDS stamps both, with the clock of this
+machine. So the plate samples that the tracker needs for the frame, inverse kinematics, muscle
+analysis, the monitor and every hop between are in it; the delay of the live filters, which is
+known and said in every message, is not: it is taken off the stamps.
+"""
+
+from __future__ import annotations
+
+import os
+import struct
+import subprocess
+import time
+from collections.abc import Iterable
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Final
+
+import numpy as np
+import rclpy
+from lifting_interfaces.msg import Markers
+from numpy.typing import NDArray
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from std_msgs.msg import Header
+from std_srvs.srv import SetBool
+
+from lifting_bringup.graph import Graph
+from lifting_bringup.node_process import PARAMETERS, NodeProcess, discovery, start_module
+from lifting_bringup.session import summarise
+from lifting_node import qos
+
+Array = NDArray[np.float64]
+
+ROOT: Final = Path(__file__).resolve().parents[1]
+CHAIN: Final = ('muscle_analyzer', 'motion_tracker', 'injury_monitor')
+WHOLE: Final = ('muscle_analyzer', 'lift_predictor', 'motion_tracker', 'injury_monitor')
+MODULES: Final = {'injury_monitor': 'benchmarks.monitor_probe'}
+"""Modules that stand for a node's own."""
+SETTLE: Final = 1.0
+"""Beginning of a play that is not counted: the filters settle, the processes wake up [s]."""
+PLAYER_LIMIT: Final = 30.0
+"""Time [s] for players to appear, and beyond a recording's length for them to end."""
+LATE: Final = 10.0
+"""Time [s] after the recording's end in which a frame may still be judged."""
+GENTLE: Final = 3.0
+"""Time [s] a process has to end before it is killed."""
+STAMPS: Final = 1e-4
+"""Differences [s] of stamps below which they are of the same frame."""
+_STAMP: Final = struct.Struct('<iI')
+_CDR_HEAD: Final = 4
+
+
+class Station:
+    """One namespaced graph and what was heard of it.
+
+    Parameters
+    ----------
+    name
+        Namespace.
+    nodes
+        Names of its nodes.
+    node
+        Node of this process.
+    logs
+        Folder of the processes' output.
+    """
+
+    def __init__(self, name: str, nodes: Iterable[str], node: Node, logs: Path) -> None:
+        self.name = name
+        self._logs = logs / name
+        self._node = node
+        self.processes = [
+            start_module(
+                n, MODULES.get(n, f'{n}.{n}_node'), self._logs, name, parameters=PARAMETERS.get(n)
+            )
+            for n in nodes
+        ]
+        self.player: NodeProcess | None = None
+        self.sent: list[tuple[float, float]] = []
+        self.judged: list[tuple[float, float]] = []
+        node.create_subscription(Markers, f'/{name}/markers', self._on_markers, qos.FRAMES,
+                                 raw=True)  # fmt: skip
+        node.create_subscription(Header, f'/{name}/judged', self._on_judged, qos.FRAMES)
+
+    def _on_markers(self, data: bytes, info: dict[str, int]) -> None:
+        seconds, nanoseconds = _STAMP.unpack_from(data, _CDR_HEAD)
+        self.sent.append((seconds + 1e-9 * nanoseconds, 1e-9 * info['source_timestamp']))
+
+    def _on_judged(self, message: Header, info: dict[str, int]) -> None:
+        stamp = message.stamp.sec + 1e-9 * message.stamp.nanosec
+        self.judged.append((stamp, 1e-9 * info['received_timestamp']))
+
+    def start_player(self, bag: Path) -> None:
+        """Start a paused player of a recording."""
+        inputs = summarise(bag).inputs
+        arguments = (
+            'play', str(bag), '--station', self.name, '--start-paused', '--wait-timeout', '60',
+            '--wait-for', *inputs,
+        )  # fmt: skip
+        self.player = start_module(
+            'player', 'lifting_bringup.cli', self._logs, arguments=arguments
+        )
+
+    @property
+    def waiting(self) -> bool:
+        """Whether frames have been sent that are not judged."""
+        return len(self.judged) < len(self.sent)
+
+    def latencies(self) -> Array:
+        """Give the latencies [s] of the frames heard since the last call, less the first second.
+
+        Those that were not judged in time are infinite.
+
+        Raises
+        ------
+        RuntimeError
+            If frames cannot be told from each other.
+        """
+        sent, judged = np.array(self.sent), np.full((len(self.sent), 2), np.inf)
+        judged[: len(self.judged)] = self.judged
+        in_time = len(self.judged)
+        self.sent, self.judged = [], []
+        delay = (sent - judged)[:in_time, 0]
+        if not in_time or np.ptp(delay) > STAMPS:
+            raise RuntimeError(f'{self.name}: frames were lost or came in another order than sent')
+        later = sent[:, 0] >= sent[0, 0] + SETTLE
+        latency: Array = (judged[:, 1] - sent[:, 1])[later]
+        return latency
+
+
+class Stations:
+    """Stations that are measured together; every process of them ends with this context.
+
+    Parameters
+    ----------
+    nodes
+        Names of the nodes of each station.
+    logs
+        Folder of the processes' output.
+    """
+
+    def __init__(self, nodes: tuple[str, ...], logs: Path) -> None:
+        self._nodes = nodes
+        self._logs = logs
+        self._stations: list[Station] = []
+
+    def __enter__(self) -> Stations:
+        """Start ROS in this process."""
+        os.environ.update(discovery())
+        # The probe is a module of the benchmarks.
+        os.environ['PYTHONPATH'] = os.pathsep.join(
+            [str(ROOT), *filter(None, [os.environ.get('PYTHONPATH')])]
+        )
+        rclpy.init()
+        self._node = Node('latency_bench')
+        # The only executor that tells the middleware's stamps.
+        self._executor = SingleThreadedExecutor()
+        self._executor.add_node(self._node)
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        """End all processes, hard if they do not."""
+        processes = [p for station in self._stations for p in station.processes]
+        processes += [s.player for s in self._stations if s.player is not None]
+        for process in processes:
+            process.terminate()
+        end = time.monotonic() + GENTLE
+        for process in processes:
+            try:
+                process.process.wait(max(0.0, end - time.monotonic()))
+            except subprocess.TimeoutExpired:
+                process.process.kill()
+                process.process.wait()
+        self._executor.shutdown()
+        self._node.destroy_node()
+        rclpy.try_shutdown()
+
+    def add(self) -> None:
+        """Start one station more and bring it up."""
+        name = f'bench_{os.getpid()}_{len(self._stations) + 1}'
+        station = Station(name, self._nodes, self._node, self._logs)
+        self._stations.append(station)
+        Graph(self._node, self._executor, name, station.processes).bring_up()
+
+    def play(self, bag: Path) -> list[Array]:
+        """Play a recording in all stations at once; give the latencies [s] of each.
+
+        Raises
+        ------
+        RuntimeError
+            If a player fails or frames are lost.
+        """
+        for station in self._stations:
+            station.start_player(bag)
+        clients = [
+            self._node.create_client(SetBool, f'/{station.name}/player/pause')
+            for station in self._stations
+        ]
+        self._spin(lambda: all(client.service_is_ready() for client in clients), PLAYER_LIMIT)
+        futures = [client.call_async(SetBool.Request(data=False)) for client in clients]
+        duration = summarise(bag).duration
+        players = [station.player for station in self._stations]
+        self._spin(
+            lambda: all(p is not None and p.process.poll() is not None for p in players),
+            duration + PLAYER_LIMIT,
+        )
+        for player in players:
+            if player is not None and player.process.returncode:
+                player.check()
+        assert all(future.done() for future in futures)
+        for client in clients:
+            self._node.destroy_client(client)
+        end = time.monotonic() + LATE
+        while time.monotonic() < end and any(s.waiting for s in self._stations):
+            self._executor.spin_once(timeout_sec=0.05)
+        return [station.latencies() for station in self._stations]
+
+    def _spin(self, done: Any, limit: float) -> None:
+        end = time.monotonic() + limit
+        while not done():
+            self._executor.spin_once(timeout_sec=0.05)
+            for station in self._stations:
+                for process in station.processes:
+                    process.check()
+            if time.monotonic() > end:
+                raise RuntimeError(f'not done within {limit:g} s')
