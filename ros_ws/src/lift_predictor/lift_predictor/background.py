@@ -14,7 +14,8 @@ from rclpy.node import Node
 from rclpy.task import Future
 
 from lift_predictor.core.exceptions import CancelledError
-from lift_predictor.core.predictor import LiftPredictor, PredictorOptions
+from lift_predictor.core.options import PredictorOptions
+from lift_predictor.core.predictor import LiftPredictor
 
 
 class Background:

@@ -22,7 +22,8 @@ from human_model.subject import Subject
 from lift_predictor import conversions
 from lift_predictor.background import Background
 from lift_predictor.core.exceptions import CancelledError, LiftPredictorError
-from lift_predictor.core.predictor import LiftPredictor, PredictorOptions
+from lift_predictor.core.options import PredictorOptions
+from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.sagittal.prediction import PredictedLift2D
 from lift_predictor.plan_action import PlanAction
 from lifting_node import qos

@@ -13,12 +13,13 @@ import pytest
 from human_model.report import SolveStatus
 from lift_predictor.core.exceptions import CancelledError, PlanError, UnreachableError
 from lift_predictor.core.maximum_weight import Weighting
+from lift_predictor.core.options import PredictorOptions
 from lift_predictor.core.planning.feet import place_feet
 from lift_predictor.core.planning.plan_task import PlanTask
 from lift_predictor.core.planning.planner import LiftPlanner
 from lift_predictor.core.planning.summary import summarise
 from lift_predictor.core.planning.task_file import read_task_file
-from lift_predictor.core.predictor import LiftPredictor, PredictorOptions
+from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.study.study_file import read_study
 
 ROOT = Path(__file__).resolve().parents[4]

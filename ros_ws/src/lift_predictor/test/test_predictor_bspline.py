@@ -37,6 +37,24 @@ def test_starts_and_ends_at_rest_on_its_control_points(n_control: int) -> None:
     np.testing.assert_allclose(spline.basis(ends)[1], np.eye(spline.n_free)[-1])
 
 
+@given(n_control=st.integers(7, 12))
+def test_rests_in_acceleration_too(n_control: int) -> None:
+    spline = RestToRestSpline(n_control, 'acceleration')
+    assert spline.n_free == n_control - 4
+    ends = np.array([0.0, 1.0])
+    for order in (1, 2):
+        np.testing.assert_allclose(spline.basis(ends, order), 0.0, atol=1e-10)
+    np.testing.assert_allclose(spline.basis(ends)[0], np.eye(spline.n_free)[0])
+    np.testing.assert_allclose(spline.basis(np.linspace(0.0, 1.0, 23)).sum(axis=1), 1.0)
+    free = np.random.default_rng(n_control).normal(size=(spline.n_free, 2))
+    s = np.linspace(0.0, 1.0, 40)
+    np.testing.assert_allclose(spline.fit(s, spline.basis(s) @ free), free, atol=1e-9)
+    # The same motion with the ends written out, by the spline that rests in velocity only.
+    other = RestToRestSpline(n_control)
+    control = np.vstack((free[:1], free, free[-1:]))
+    np.testing.assert_allclose(spline.basis(s) @ free, other.basis(s) @ control, atol=1e-12)
+
+
 @given(n_control=st.integers(5, 12))
 def test_is_a_partition_of_unity(n_control: int) -> None:
     basis = RestToRestSpline(n_control).basis(np.linspace(0.0, 1.0, 23))
@@ -61,6 +79,10 @@ def test_simpson_integrates_cubics_exactly() -> None:
 def test_refuses_too_few_control_points(n_control: int) -> None:
     with pytest.raises(SplineError, match=f'n_control = {n_control}'):
         RestToRestSpline(n_control)
+    with pytest.raises(SplineError, match='at least 7'):
+        RestToRestSpline(6, 'acceleration')
+    with pytest.raises(SplineError, match="'jerk': not one of velocity, acceleration"):
+        Grid(7, 25, 'jerk')
 
 
 @pytest.mark.parametrize('n_nodes', [5, 8, 24, 26])

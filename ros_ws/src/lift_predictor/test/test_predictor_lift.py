@@ -14,7 +14,8 @@ from human_model.report import SolveReport, SolveStatus
 from human_model.skeleton import ExternalForce
 from human_model.subject import Subject
 from lift_predictor.core.exceptions import TaskError
-from lift_predictor.core.predictor import LiftPredictor, PredictorOptions
+from lift_predictor.core.options import PredictorOptions
+from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.sagittal.parameters import JOINTS
 from lift_predictor.core.sagittal.task import Box, build_task
 from lift_predictor.core.sagittal.verify import TOLERANCE

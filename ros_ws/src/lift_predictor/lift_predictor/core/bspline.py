@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,8 @@ from lift_predictor.core.exceptions import SplineError
 
 DEGREE = 3
 MIN_CONTROL_POINTS = 5
+REST: Final = {'velocity': 2, 'acceleration': 3}
+"""What is zero at both ends, and how many control points are merged there for it."""
 
 Array = NDArray[np.float64]
 
@@ -23,31 +26,41 @@ class RestToRestSpline:
 
     Zero slope at both ends of a clamped spline means that the first two control points are equal,
     and the last two: they are merged, so that equation 4.7 holds exactly and `n_control - 2`
-    values per joint remain.
+    values per joint remain. Zero curvature as well means that the first three are equal, and the
+    last three: `n_control - 4` remain.
 
     Parameters
     ----------
     n_control : int
-        Number of control points per joint, at least 5 (the dissertation's choice).
+        Number of control points per joint, at least 5 (the dissertation's choice), and 7 for rest
+        in acceleration.
+    rest : str
+        'velocity' (equation 4.7), or 'acceleration': of both.
 
     Raises
     ------
     SplineError
-        Fewer than 5 control points.
+        Too few control points, or another word for the rest.
     """
 
     n_control: int
+    rest: str = 'velocity'
 
     def __post_init__(self) -> None:
-        if self.n_control < MIN_CONTROL_POINTS:
-            raise SplineError(
-                f'n_control = {self.n_control}: at least {MIN_CONTROL_POINTS} are needed'
-            )
+        if self.rest not in REST:
+            raise SplineError(f'rest = {self.rest!r}: not one of {", ".join(REST)}')
+        least = MIN_CONTROL_POINTS + 2 * (self._merged - REST['velocity'])
+        if self.n_control < least:
+            raise SplineError(f'n_control = {self.n_control}: at least {least} are needed')
+
+    @property
+    def _merged(self) -> int:
+        return REST[self.rest]
 
     @property
     def n_free(self) -> int:
         """Free values per joint."""
-        return self.n_control - 2
+        return self.n_control - 2 * (self._merged - 1)
 
     @property
     def n_spans(self) -> int:
@@ -108,9 +121,10 @@ class RestToRestSpline:
 
     def _merge(self) -> Array:
         merge = np.zeros((self.n_control, self.n_free))
-        merge[1:-1] = np.eye(self.n_free)
-        merge[0, 0] = 1.0
-        merge[-1, -1] = 1.0
+        merged = self._merged
+        merge[merged - 1 : self.n_control - merged + 1] = np.eye(self.n_free)
+        merge[:merged, 0] = 1.0
+        merge[-merged:, -1] = 1.0
         return merge
 
 

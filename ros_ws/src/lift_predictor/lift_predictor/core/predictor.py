@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,25 +19,24 @@ from human_model.report import SolveReport, SolveStatus
 from human_model.subject import Subject
 from lift_predictor.core.exceptions import AsymmetricLiftError, TaskError, UnreachableError
 from lift_predictor.core.nearest_lift import HOPELESS, NearestLift, closer_lift, with_nearest
+from lift_predictor.core.options import IN_THE_PLANE, PredictorOptions
 from lift_predictor.core.sagittal.comparison import LiftComparison, compare
 from lift_predictor.core.sagittal.evaluation import evaluate, sample, total_effort
 from lift_predictor.core.sagittal.feasibility import (
     as_nearest,
     largest_mass,
-    lighter_lift,
     missing_way,
     way_to,
 )
-from lift_predictor.core.sagittal.grid import Grid
 from lift_predictor.core.sagittal.lift_motion import body_motion, mtp_torque, sample_times
 from lift_predictor.core.sagittal.optimiser import LiftOptimiser
 from lift_predictor.core.sagittal.outcome import judge
-from lift_predictor.core.sagittal.person import COEFFICIENT_SET, Person
+from lift_predictor.core.sagittal.person import Person
 from lift_predictor.core.sagittal.prediction import TORQUE_NAMES, PredictedLift2D
 from lift_predictor.core.sagittal.refine import Refiner
 from lift_predictor.core.sagittal.solved_lifts import library_starts
 from lift_predictor.core.sagittal.starts import make_starts
-from lift_predictor.core.sagittal.task import POSTURE_TOLERANCE, Box, LiftTask2D, build_task
+from lift_predictor.core.sagittal.task import Box, LiftTask2D, build_task
 from lift_predictor.core.sagittal.verify import Verification
 from lift_predictor.core.solvers.optimum import Optimum, Progress, Start
 
@@ -45,55 +44,9 @@ if TYPE_CHECKING:
     # They import CasADi, which a lift in the plane does without.
     from lift_predictor.core.spatial.comparison import SpatialComparison
     from lift_predictor.core.spatial.prediction import PredictedLift3D
-    from lift_predictor.core.spatial.predictor import SpatialOptions, SpatialPredictor
+    from lift_predictor.core.spatial.predictor import SpatialPredictor
 
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class PredictorOptions:
-    """Settings of the prediction.
-
-    Attributes
-    ----------
-    n_control : int
-        Control points per joint.
-    n_nodes : int
-        Time nodes; see `nlp.Grid`.
-    posture_tolerance : float
-        Epsilon of equation 4.8 [rad].
-    coefficient_set : str
-        Published strength data, a name of `human_model.strength.coefficient_sets`.
-    time_limit : float
-        Wall time of one run at most, and time after which none is begun any more [s]: a last
-        resort, as runs are limited by their iterations.
-    refinements : int
-        How often the lift is solved again with a margin when the dense grid shows a violation;
-        where that does not help, it is solved with more nodes.
-    dimension : str
-        '2d', '3d', or 'auto': asymmetric lifts on the 3D skeleton are predicted in space.
-    """
-
-    n_control: int = 7
-    n_nodes: int = 25
-    posture_tolerance: float = POSTURE_TOLERANCE
-    coefficient_set: str = COEFFICIENT_SET
-    time_limit: float = 10.0
-    refinements: int = 6
-    dimension: str = 'auto'
-
-    @property
-    def spatial(self) -> SpatialOptions:
-        """The same settings for lifts in space; recorded postures have the windows of 3.15."""
-        from lift_predictor.core.spatial.predictor import SpatialOptions
-
-        return SpatialOptions(
-            n_control=self.n_control,
-            n_nodes=self.n_nodes,
-            coefficient_set=self.coefficient_set,
-            time_limit=max(self.time_limit, SpatialOptions.time_limit),
-            refinements=max(self.refinements, SpatialOptions.refinements),
-        )
 
 
 class LiftPredictor:
@@ -115,9 +68,7 @@ class LiftPredictor:
         self.person: Person | None = None
         self._subject: Subject | None = None
         self._spatial: SpatialPredictor | None = None
-        self.programme = LiftOptimiser(
-            Grid(self.options.n_control, self.options.n_nodes), self.options.time_limit
-        )
+        self.programme = LiftOptimiser(self.options.grid, self.options.time_limit)
         self._refiner = Refiner(self.programme, self.options.refinements)
 
     def configure(self, subject: Subject, segments: SegmentParameters | None = None) -> None:
@@ -198,14 +149,17 @@ class LiftPredictor:
             task = self._task(lift, box, share)
         except (TaskError, UnreachableError, HumanModelError) as error:
             in_space = self.options.dimension == 'auto' and lift.motion.skeleton == '3d_40dof'
+            message = str(error)
             if in_space and isinstance(error, AsymmetricLiftError):
-                raise
+                if self.options.static_ends == 'velocity':
+                    raise
+                message = f'{error}; {IN_THE_PLANE}'
             status = (
                 SolveStatus.PREDICTOR_UNREACHABLE
                 if isinstance(error, UnreachableError)
                 else SolveStatus.PREDICTOR_BAD_INPUT
             )
-            report = SolveReport(status, str(error), build_time=time.perf_counter() - begin)
+            report = SolveReport(status, message, build_time=time.perf_counter() - begin)
             return PredictedLift2D.failed(lift.lift_id, box.mass, duration, report), None
         return self._solve(task, begin, make_starts(task, self.programme.grid.spline), progress)
 
@@ -226,27 +180,6 @@ class LiftPredictor:
                 lambda share: missing_way(way, share),
             )
         return with_nearest(failed, nearest)
-
-    def lighter_lift(
-        self, task: LiftTask2D, starts: Sequence[Start] | None = None
-    ) -> NearestLift[PredictedLift2D] | None:
-        """Find the lift of an infeasible task with the largest mass that can be lifted so.
-
-        Parameters
-        ----------
-        task : LiftTask2D
-            Recorded or planned.
-        starts : sequence of Start, optional
-            Initial guesses; those of `make_starts` if omitted.
-
-        Returns
-        -------
-        NearestLift or None
-            None: not even empty hands can move so.
-        """
-        if starts is None:
-            starts = make_starts(task, self.programme.grid.spline)
-        return lighter_lift(self.solve_task, task, starts)
 
     def solve_task(
         self, task: LiftTask2D, starts: Sequence[Start], progress: Progress | None = None
@@ -290,7 +223,7 @@ class LiftPredictor:
         if status in HOPELESS:
             runs, second, nearest = self._over_lighter(task, vector, given, deadline)
             solved = second is not None and second.passed
-            optima = (*runs, *optima) if solved else (*optima, *runs)
+            optima = (*runs, *optima) if solved else (optima[0], *runs, *optima[1:])
             if solved:
                 check = second
                 status, message = judge(optima[0], check)

@@ -12,8 +12,7 @@ from human_model.report import SolveReport, SolveStatus
 from human_model.subject import Subject
 from lift_predictor.core.exceptions import TaskError, UnreachableError
 from lift_predictor.core.maximum_weight import Weighting
-from lift_predictor.core.nearest_lift import HOPELESS, NearestLift, with_nearest
-from lift_predictor.core.planning.build import build_plan
+from lift_predictor.core.nearest_lift import HOPELESS, with_nearest
 from lift_predictor.core.planning.feet import Placement, place_feet
 from lift_predictor.core.planning.nearest import nearest_plan
 from lift_predictor.core.planning.plan_task import PlanTask
@@ -83,10 +82,7 @@ class LiftPlanner:
         failed = planned.prediction
         if failed.report.status not in HOPELESS:
             return planned
-        nearest: NearestLift[PredictedLift2D] | None = None
-        if failed.report.status is not SolveStatus.PREDICTOR_UNREACHABLE and task.box_mass:
-            # Where the lift was sought: with free feet, at the place that came nearest.
-            nearest = self._lighter(task, planned.ankle)
+        nearest = failed.nearest
         if nearest is None:
             nearest = nearest_plan(
                 lambda other: self._sagittal(subject, other, listener, weights, PROBES).prediction,
@@ -94,13 +90,6 @@ class LiftPlanner:
                 failed,
             )
         return replace(planned, prediction=with_nearest(failed, nearest))
-
-    def _lighter(self, task: PlanTask, ankle: float) -> NearestLift[PredictedLift2D] | None:
-        if self.predictor.person is None:
-            raise TaskError('subject: none was configured before the plan')
-        plan = build_plan(self.predictor.person, task, ankle)
-        starts = plan.starts(self.predictor.programme.grid.spline, STARTS)
-        return self.predictor.lighter_lift(plan.task, starts)
 
     def _sagittal(
         self,

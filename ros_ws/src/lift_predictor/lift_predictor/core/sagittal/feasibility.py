@@ -56,24 +56,11 @@ def largest_mass(
     return solve(replace(task, parameters=parameters, bounds=bounds), begun)
 
 
-def lighter_lift(
-    solve: Solve, task: LiftTask2D, starts: Sequence[Start]
-) -> NearestLift[PredictedLift2D] | None:
-    """Find the nearest lift with less mass.
-
-    Parameters are those of `largest_mass`.
-
-    Returns
-    -------
-    NearestLift or None
-        None: not even empty hands can move so, or all of the mass can be lifted.
-    """
-    found = largest_mass(solve, task, starts)
-    return None if found is None else as_nearest(found, task)
-
-
 def as_nearest(found: PredictedLift2D, task: LiftTask2D) -> NearestLift[PredictedLift2D] | None:
-    """Return what `largest_mass` found as the nearest lift; None as `lighter_lift`."""
+    """Return what `largest_mass` found as the nearest lift.
+
+    None: not even empty hands can move so, or all of the mass can be lifted.
+    """
     limits = [name for name, _ in found.optima[0].binding]
     return lighter(found, float(task.bounds.box_mass[1]), limits)
 

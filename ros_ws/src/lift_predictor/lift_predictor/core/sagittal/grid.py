@@ -74,6 +74,8 @@ class Grid:
         Uniform time nodes of the constraints, and of Simpson's rule for the effort: an even number
         of intervals in each spline piece, and so at least 2 (n_control - 3) + 1 nodes, as with
         fewer the optimiser finds motions that violate the constraints between the nodes.
+    rest : str
+        What is zero at both ends: 'velocity' (equation 4.7), or 'acceleration' as well.
 
     Raises
     ------
@@ -83,14 +85,16 @@ class Grid:
 
     n_control: int
     n_nodes: int
+    rest: str = 'velocity'
 
     def __post_init__(self) -> None:
         require_nodes(self.n_control, self.n_nodes)
+        RestToRestSpline(self.n_control, self.rest)
 
     @property
     def spline(self) -> RestToRestSpline:
         """Spline of each joint."""
-        return RestToRestSpline(self.n_control)
+        return RestToRestSpline(self.n_control, self.rest)
 
     @property
     def n_variables(self) -> int:

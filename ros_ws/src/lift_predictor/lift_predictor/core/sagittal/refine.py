@@ -75,7 +75,7 @@ class Refiner:
         -------
         tuple of Optimum, Verification or None
             The check is of the first run, and None if that did not converge. Where nothing helps
-            it tells what is violated.
+            it tells what is violated. The runs that were given come last.
         """
         runs, check = self._with_margins(task, vector, tuple(optima), deadline)
         if check is None or check.passed:
@@ -84,7 +84,7 @@ class Refiner:
         for candidate in _distinct(optima):
             for factor in FINER:
                 if time.perf_counter() > deadline:
-                    return (*runs, *tried), check
+                    return (runs[0], *tried, *runs[1:]), check
                 finer = self._optimiser(factor)
                 again = finer.solve(vector, task.bounds, candidate.as_start())
                 again = replace(again, start=f'{again.start}, {finer.grid.n_nodes} nodes')
@@ -93,9 +93,9 @@ class Refiner:
                     break
                 checked = self._check(task, finer.grid, again)
                 if checked.passed:
-                    return (again, *runs, *tried), checked
+                    return (again, *tried, *runs), checked
                 tried.append(again)
-        return (*runs, *tried), check
+        return (runs[0], *tried, *runs[1:]), check
 
     def _with_margins(
         self, task: LiftTask2D, vector: Array, optima: tuple[Optimum, ...], deadline: float
@@ -128,7 +128,7 @@ class Refiner:
         """Solver with more nodes; made when it is first needed."""
         if factor not in self._finer:
             grid = self.optimiser.grid
-            finer = Grid(grid.n_control, factor * (grid.n_nodes - 1) + 1)
+            finer = replace(grid, n_nodes=factor * (grid.n_nodes - 1) + 1)
             self._finer[factor] = LiftOptimiser(finer, self.optimiser.time_limit)
         return self._finer[factor]
 
