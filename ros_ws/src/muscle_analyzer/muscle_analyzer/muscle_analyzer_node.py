@@ -21,6 +21,7 @@ from lifting_interfaces.msg import (
     Task,
 )
 from lifting_interfaces.msg import Subject as SubjectMsg
+from rclpy.clock import Clock, ClockType
 from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 
 from human_model.errors import HumanModelError
@@ -36,9 +37,13 @@ from muscle_analyzer.core.muscle_analysis import MuscleAnalysis as Analysis
 from muscle_analyzer.core.muscle_strength import StrengthScaling
 from muscle_analyzer.core.segment_masses import MassDistribution
 from muscle_analyzer.core.static_optimization import StaticOptimizationOptions
+from muscle_analyzer.lift_queue import LiftQueue, WaitingLift
 
 WAITING_LIFTS: Final = 100
 """Lifts kept until their person is known and the node is active."""
+
+LIFT_STEP: Final = 0.001
+"""Time [s] that a whole lift is worked on before live samples have their turn, and the pause."""
 
 
 class MuscleAnalyzerNode(PipelineNode):
@@ -69,6 +74,12 @@ class MuscleAnalyzerNode(PipelineNode):
         # Topics overtake each other: motion may come before the person and the task it belongs to.
         self._early: deque[BodyMotion] = deque(maxlen=qos.FRAME_DEPTH)
         self._waiting: OrderedDict[tuple[str, str], MeasuredLift | PredictedLift] = OrderedDict()
+        self._queue = LiftQueue(
+            self.analyzer, self._lift_done, self._lift_failed, self.INPUT_ERRORS
+        )
+        self._turn = self.create_timer(
+            LIFT_STEP, self._work, clock=Clock(clock_type=ClockType.STEADY_TIME), autostart=False
+        )
         self._muscles = self.advertise(MuscleAnalysis, 'muscle_analysis', qos.FRAMES)
         self._spine = self.advertise(SpineLoad, 'spine_load', qos.FRAMES)
         self._torques = self.advertise(JointTorques, 'joint_torques', qos.FRAMES)
@@ -86,8 +97,20 @@ class MuscleAnalyzerNode(PipelineNode):
         self._analyze_waiting()
         return result
 
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Finish the lifts that are being analysed, then stop publishing."""
+        self._queue.finish()
+        return super().on_deactivate(state)
+
+    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Drop the timer with the rest."""
+        self.destroy_timer(self._turn)
+        return super().on_cleanup(state)
+
     def _on_subject(self, message: SubjectMsg) -> None:
         subject = conversions.subject_from_msg(message)
+        # Lifts of the person before are analysed with that person's model.
+        self._queue.finish()
         self._subject = None
         self.analyzer.configure(subject)
         self._subject = subject
@@ -112,7 +135,9 @@ class MuscleAnalyzerNode(PipelineNode):
             return
         motion = conversions.motion_from_msg(message)
         mass = conversions.mass_in_hands(motion, self._box_mass)
-        analysis = self._analyze(message, motion, '', 'live', mass)
+        status = conversions.quality_from_msg(message).status
+        analysis = self.analyzer.analyze(motion, '', 'live', status)
+        self._publish(analysis, motion, mass)
         self.counts['live samples'] += len(analysis)
         self.counts['live samples with good L5-S1 load'] += analysis.good_spine_samples
         for reaction in conversions.reactions_to_msg(analysis):
@@ -135,38 +160,45 @@ class MuscleAnalyzerNode(PipelineNode):
         self._analyze_waiting()
 
     def _analyze_waiting(self) -> None:
-        """Analyse the lifts of the person that is known; those of others go on waiting."""
+        """Queue the lifts of the person that is known; those of others go on waiting."""
         if self._subject is None or not self.active:
             return
         person = self._subject.pseudonym
         for key in [key for key, lift in self._waiting.items() if lift.subject == person]:
             lift = self._waiting.pop(key)
+            source, name = key
             try:
                 motion = conversions.motion_from_msg(lift.motion)
-                analysis = self._analyze(
-                    lift.motion, motion, lift.lift_id, key[0], lift.box_mass
-                )
             except self.INPUT_ERRORS as error:
-                self.report_error(f'{key[0]}_lift {lift.lift_id}: {error}')
+                self.report_error(f'{source}_lift {name}: {error}')
                 continue
-            self.get_logger().info(
-                f'{lift.lift_id} {key[0]}: peak L5-S1 compression '
-                f'{analysis.peak_compression:.0f} N; {analysis.good_spine_samples} of '
-                f'{len(analysis)} samples good; {analysis.spine_report.message}'
-            )
+            status = conversions.quality_from_msg(lift.motion).status
+            self._queue.add(WaitingLift(name, source, lift.box_mass, motion, status))
+            self._turn.reset()
 
-    def _analyze(
-        self, message: BodyMotion, motion: Motion, lift_id: str, source: str, box_mass: float
-    ) -> Analysis:
-        """Analyse a block, publish all of it and return it."""
-        quality = conversions.quality_from_msg(message)
-        analysis = self.analyzer.analyze(motion, lift_id, source, quality.status)
-        torques = self.analyzer.joint_torques(analysis, motion)
+    def _work(self) -> None:
+        self._queue.work(LIFT_STEP)
+        if not self._queue:
+            self._turn.cancel()
+
+    def _lift_failed(self, lift: WaitingLift, error: Exception) -> None:
+        self.report_error(f'{lift.source}_lift {lift.lift_id}: {error}')
+
+    def _lift_done(self, lift: WaitingLift, analysis: Analysis) -> None:
+        self._publish(analysis, lift.motion, lift.box_mass)
+        self.get_logger().info(
+            f'{lift.lift_id} {lift.source}: peak L5-S1 compression '
+            f'{analysis.peak_compression:.0f} N; {analysis.good_spine_samples} of '
+            f'{len(analysis)} samples good; {analysis.spine_report.message}'
+        )
+
+    def _publish(self, analysis: Analysis, motion: Motion, box_mass: float) -> None:
+        """Publish all of an analysis, first what alarms hang on."""
         self._spine.publish(conversions.spine_load_to_msg(analysis, box_mass))
+        torques = self.analyzer.joint_torques(analysis, motion)
         self._torques.publish(conversions.torques_to_msg(torques))
-        self._joints.publish(conversions.joint_reactions_to_msg(analysis))
         self._muscles.publish(conversions.analysis_to_msg(analysis))
-        return analysis
+        self._joints.publish(conversions.joint_reactions_to_msg(analysis))
 
 
 def main(args: list[str] | None = None) -> None:

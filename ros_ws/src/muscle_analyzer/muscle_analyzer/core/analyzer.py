@@ -146,6 +146,7 @@ class MuscleAnalyzer:
         lift_id: str = '',
         source: str = 'live',
         tracker_status: ArrayLike | None = None,
+        continued: bool = False,
     ) -> MuscleAnalysis:
         """
         Analyse a block of one or more samples.
@@ -160,6 +161,9 @@ class MuscleAnalyzer:
             ``'live'``, ``'measured'`` or ``'predicted'``.
         tracker_status
             (n,) SolveStatus of the motion tracker per sample; none if the motion was not tracked.
+        continued
+            Whether this block goes on where the one before of the same source ended: a lift in
+            parts has the same results as in one block (`muscle_analysis.joined`).
 
         Raises
         ------
@@ -183,7 +187,7 @@ class MuscleAnalyzer:
                 'samples is needed'
             )
         transfer, solver = self._stream(source, motion.skeleton)
-        if source != 'live':
+        if source != 'live' and not continued:
             transfer.reset()
             solver.reset()
         samples = []

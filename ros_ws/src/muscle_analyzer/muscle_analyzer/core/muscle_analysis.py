@@ -4,7 +4,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -165,3 +167,22 @@ class MuscleAnalysis:
         """Largest L5-S1 compression of the good samples [N]; NaN if there is none."""
         good = self.compression[self.spine_status == SolveStatus.OK]
         return float(good.max()) if good.size else float('nan')
+
+
+def joined(parts: Sequence[MuscleAnalysis]) -> MuscleAnalysis:
+    """
+    Give one analysis of consecutive parts of a lift.
+
+    Parameters
+    ----------
+    parts
+        At least one, of the same lift, person and options.
+    """
+    values: dict[str, Any] = {}
+    for name in (field.name for field in fields(MuscleAnalysis)):
+        first = getattr(parts[0], name)
+        if isinstance(first, np.ndarray):
+            values[name] = np.concatenate([getattr(part, name) for part in parts])
+        elif name in ('reports', 'spine_reports'):
+            values[name] = tuple(report for part in parts for report in getattr(part, name))
+    return replace(parts[0], **values)

@@ -1,0 +1,95 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Whole lifts in steps: the same numbers as at once, errors told, nothing lost."""
+
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+
+from muscle_analyzer.core.analyzer import MuscleAnalyzer
+from muscle_analyzer.core.exceptions import MuscleAnalyzerError
+from muscle_analyzer.core.muscle_analysis import MuscleAnalysis
+from muscle_analyzer.lift_queue import LiftQueue, WaitingLift
+
+NO_TIMES = {'build_time': 0.0, 'solve_time': 0.0}
+
+
+@pytest.fixture
+def finished():
+    return []
+
+
+@pytest.fixture
+def queue(box_lift, finished):
+    return LiftQueue(
+        box_lift.analyzer,
+        lambda lift, analysis: finished.append((lift, analysis)),
+        lambda lift, error: finished.append((lift, error)),
+        (MuscleAnalyzerError,),
+    )
+
+
+def waiting(body, name='lift_001', source='measured'):
+    return WaitingLift(name, source, 12.0, body, np.zeros(len(body), np.int64))
+
+
+def assert_equal(ours, whole):
+    for field in fields(MuscleAnalysis):
+        a, b = getattr(ours, field.name), getattr(whole, field.name)
+        if isinstance(b, np.ndarray):
+            np.testing.assert_array_equal(a, b, err_msg=field.name)
+        elif field.name not in ('reports', 'spine_reports'):
+            assert a == b, field.name
+    for kind in ('reports', 'spine_reports'):
+        for a, b in zip(getattr(ours, kind), getattr(whole, kind), strict=True):
+            # Not-a-numbers of unsolved samples are equal as text.
+            assert repr(replace(a, **NO_TIMES)) == repr(replace(b, **NO_TIMES))
+
+
+def test_a_lift_in_steps_has_the_numbers_of_the_lift_at_once(box_lift, queue, finished):
+    """A step of no length takes one sample; live samples in between change nothing."""
+    body = box_lift.body
+    whole = box_lift.analyzer.analyze(body, 'lift_001', 'measured', np.zeros(len(body), int))
+    queue.add(waiting(body))
+    for k in range(len(body)):
+        assert not finished
+        queue.work(0.0)
+        box_lift.analyzer.analyze(body[-1 - k])
+    queue.work(0.0)
+    assert not queue
+    ((_, ours),) = finished
+    assert_equal(ours, whole)
+
+
+def test_lifts_are_finished_in_their_order(box_lift, queue, finished):
+    body = box_lift.body[:5]
+    queue.add(waiting(body, 'lift_001'))
+    queue.add(waiting(body, 'lift_001', 'predicted'))
+    assert len(queue) == 2
+    queue.finish()
+    assert [(lift.lift_id, lift.source) for lift, _ in finished] == [
+        ('lift_001', 'measured'), ('lift_001', 'predicted'),
+    ]  # fmt: skip
+    assert len(queue) == 0
+
+
+def test_a_lift_that_cannot_be_analysed_is_told_and_the_next_goes_on(box_lift, queue, finished):
+    body = box_lift.body[:4]
+    bad = waiting(body, 'lift_001', 'recorded')
+    queue.add(bad)
+    queue.add(waiting(body, 'lift_002'))
+    queue.finish()
+    assert 'recorded' in str(finished[0][1])
+    assert finished[1][0].lift_id == 'lift_002'
+    assert len(finished[1][1]) == 4
+
+
+def test_an_unknown_error_is_not_taken_for_bad_input(queue, box_lift, monkeypatch):
+    def broken(*_, **__):
+        raise ZeroDivisionError
+
+    monkeypatch.setattr(MuscleAnalyzer, 'analyze', broken)
+    queue.add(waiting(box_lift.body[:2]))
+    with pytest.raises(ZeroDivisionError):
+        queue.work(0.0)
