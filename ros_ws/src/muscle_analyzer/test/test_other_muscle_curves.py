@@ -13,12 +13,17 @@ import pytest
 
 from muscle_analyzer.core import millard_curves as millard
 from muscle_analyzer.core.exceptions import OsimFormatError
-from muscle_analyzer.core.millard_curves import CurveTable, MillardCurves
-from muscle_analyzer.core.muscle_curves import MuscleParameters
+from muscle_analyzer.core.millard_curves import curve_table, curve_value, millard_curves
+from muscle_analyzer.core.muscle_curves import MuscleParameters, strength
 from muscle_analyzer.core.opensim.model_writer import write_osim
 from muscle_analyzer.core.osim_model import Muscle
 from muscle_analyzer.core.osim_reader import read_osim
-from muscle_analyzer.core.thelen_curves import ThelenCurves
+from muscle_analyzer.core.thelen_curves import (
+    thelen_active,
+    thelen_passive,
+    thelen_rate,
+    thelen_shapes,
+)
 
 HERE = Path(__file__).parent
 MODELS = HERE.parents[3] / '.cache' / 'reference_models'
@@ -65,19 +70,21 @@ def muscle(kind, name='m', **properties):
 )
 def test_millard_curves_equal_opensim(curve, at, build, defaults, own):
     x = REFERENCE[at]
-    table = CurveTable([build(defaults)] * x.size), CurveTable([build(own)] * x.size)
-    for found, expected in zip(table, REFERENCE[curve], strict=True):
-        np.testing.assert_allclose(found(x), expected, atol=1e-7)
+    table = curve_table([build(defaults), build(own)])
+    for number, expected in enumerate(REFERENCE[curve]):
+        found = [curve_value(*table, number, each) for each in x]
+        np.testing.assert_allclose(found, expected, atol=1e-7)
 
 
 def test_muscles_have_the_curves_that_their_file_gives():
-    """The curves of two muscles of one model, each at its own length."""
+    """The curves of two muscles of one model, and none of a third."""
     own = {f'ActiveForceLengthCurve/{name}': value for name, value in ACTIVE.items()}
-    curves = MillardCurves([muscle(millard.KIND), muscle('other'), muscle(millard.KIND, **own)])
-    np.testing.assert_array_equal(curves.members, [0, 2])
+    table, number = millard_curves(
+        [muscle(millard.KIND), muscle('other'), muscle(millard.KIND, **own)]
+    )
+    np.testing.assert_array_equal(number, [[0, 1, 2], [-1, -1, -1], [3, 1, 2]])
     place = int(np.argmin(np.abs(REFERENCE['length'] - 0.7)))
-    x = REFERENCE['length'][place]
-    found = curves.active(np.array([x, x]))
+    found = [curve_value(*table, k, REFERENCE['length'][place]) for k in (0, 3)]
     np.testing.assert_allclose(found, REFERENCE['active'][:, place], atol=1e-7)
 
 
@@ -97,26 +104,26 @@ def test_curves_come_back_from_a_written_model(write_model, tmp_path):
 def test_curve_that_runs_backwards_names_its_muscle():
     wrong = {'ActiveForceLengthCurve/max_norm_active_fiber_length': 0.9}
     with pytest.raises(OsimFormatError, match='muscle m <ActiveForceLengthCurve>: sections'):
-        MillardCurves([muscle(millard.KIND, **wrong)])
+        millard_curves([muscle(millard.KIND, **wrong)])
 
 
 def test_thelen_curves_satisfy_their_equations():
     """Velocity from force by equations 6 and 7 at full activation, and the published points."""
-    curves = ThelenCurves([muscle('Thelen2003Muscle')] * 7)
+    shape, none = thelen_shapes([muscle('Thelen2003Muscle'), muscle('other')])
+    assert np.isnan(none).all()
     force = np.array([0.0, 0.3, 0.8, 1.0, 1.1, 1.25, 1.32])
     af, most = 0.25, 1.4
     slow = (force - 1.0) / (1.0 + force / af)
     fast = (force - 1.0) * (most - 1.0) / ((2.0 + 2.0 / af) * (most - force))
     velocity = np.where(force <= 1.0, slow, fast)
-    np.testing.assert_allclose(curves.rate(velocity), force, atol=1e-12)
-    one = ThelenCurves([muscle('Thelen2003Muscle')])
-    assert one.active(np.array([1.0])) == 1.0
-    assert one.passive(np.array([1.6])) == pytest.approx(1.0)
-    assert one.passive(np.array([0.9])) == 0.0
+    np.testing.assert_allclose([thelen_rate(shape, v) for v in velocity], force, atol=1e-12)
+    assert thelen_active(shape, 1.0) == 1.0
+    assert thelen_passive(shape, 1.6) == pytest.approx(1.0)
+    assert thelen_passive(shape, 0.9) == 0.0
     # Beyond 0.95 of the greatest force it is a line, without a kink.
     at = (0.95 * most - 1.0) * (most - 1.0) / ((2.0 + 2.0 / af) * 0.05 * most)
     before, here, after, further = (
-        one.rate(np.array([at + shift]))[0] for shift in (-1e-6, 0.0, 1e-6, 2e-6)
+        thelen_rate(shape, at + shift) for shift in (-1e-6, 0.0, 1e-6, 2e-6)
     )
     assert after - here == pytest.approx(here - before, rel=1e-3)
     assert further - after == pytest.approx(after - here, rel=1e-9)
@@ -133,13 +140,13 @@ def test_strengths_equal_opensim(name):
     data = {key: REFERENCE[f'{name}_{key}'] for key in ('length', 'speed', 'active', 'passive')}
     compared = 0
     for k in range(len(data['length'])):
-        state = parameters.state(data['length'][k], data['speed'][k], passive=True)
+        active, passive = strength(parameters, data['length'][k], data['speed'][k], True)
         # OpenSim stops fibres at a shortest length, below which they carry nothing.
         free = data['active'][k] > 0.0
         compared += free.sum()
         np.testing.assert_allclose(
-            state.active[free], data['active'][k][free], atol=1e-3, rtol=2e-6
+            active[free], data['active'][k][free], atol=1e-3, rtol=2e-6
         )
         if data['passive'].size:
-            np.testing.assert_allclose(state.passive[free], data['passive'][k][free], atol=1e-3)
+            np.testing.assert_allclose(passive[free], data['passive'][k][free], atol=1e-3)
     assert compared > 0.9 * data['active'].size

@@ -32,8 +32,10 @@ from dataclasses import dataclass
 from enum import StrEnum
 from functools import cache
 from importlib.resources import files
+from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from muscle_analyzer.core.exceptions import InputArrayError, OptionError
@@ -42,6 +44,9 @@ Array = NDArray[np.float64]
 
 #: OpenSim's body axes (forward, up, right) as columns forward, left, up.
 FORWARD_LEFT_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+DEGREE = math.pi / 180.0
+#: Parameters of `chaffin` in the order of `DiscSetting.regression`.
+_REGRESSION = ('constant', 'beta_0', 'beta_T', 'beta_K', 'beta_TK', 'beta_TT', 'beta_KK')
 
 
 class DiscOption(StrEnum):
@@ -65,20 +70,36 @@ class DiscLoad:
         Force of S1 on L5 in the disc frame (anterior, left, cranial), N.
     moment : (3,) array
         Moment of S1 on L5 about the joint centre in the disc frame, N m.
-    compression, anterior_shear, lateral_shear : float
-        N, signs as in the module's header.
-    compression_per_degree, shear_per_degree : float
-        Change of compression and anterior shear per degree that the disc normal is leant further
-        forward, N/deg.
     """
 
     force: Array
     moment: Array
-    compression: float
-    anterior_shear: float
-    lateral_shear: float
-    compression_per_degree: float
-    shear_per_degree: float
+
+    @property
+    def compression(self) -> float:
+        """Of the disc, N."""
+        return float(self.force[2])
+
+    @property
+    def anterior_shear(self) -> float:
+        """Positive when L5 is pushed forward on S1, N."""
+        return float(-self.force[0])
+
+    @property
+    def lateral_shear(self) -> float:
+        """Positive to the left, N."""
+        return float(self.force[1])
+
+    @property
+    def compression_per_degree(self) -> float:
+        """Change per degree that the disc normal is leant further forward, N/deg."""
+        # Leaning the normal forward turns it towards x, and x towards -z.
+        return float(self.force[0]) * DEGREE
+
+    @property
+    def shear_per_degree(self) -> float:
+        """Change of the anterior shear per degree of the same, N/deg."""
+        return float(self.force[2]) * DEGREE
 
 
 @cache
@@ -98,6 +119,41 @@ def disc_option(name: str) -> DiscOption:
         raise OptionError(f'disc frame {name!r} is not known; options: {known}') from None
 
 
+class DiscSetting(NamedTuple):
+    """
+    An option with its numbers, for the compiled functions.
+
+    Attributes
+    ----------
+    by_posture : bool
+        Whether the disc's orientation is that of `chaffin`.
+    tilt : float
+        Forward tilt against the vertebra, rad; 0 with `chaffin`.
+    regression : (7,) array
+        Constant, and coefficients of 1, T, K, T K, T^2 and K^2 of `chaffin`; deg.
+    """
+
+    by_posture: bool
+    tilt: float
+    regression: Array
+
+
+@cache
+def disc_setting(option: DiscOption) -> DiscSetting:
+    """Return an option with its numbers."""
+    regression = np.array([disc_parameters(DiscOption.CHAFFIN)[name] for name in _REGRESSION])
+    if option is DiscOption.CHAFFIN:
+        return DiscSetting(True, 0.0, regression)
+    return DiscSetting(False, math.radians(disc_parameters(option)['forward_tilt']), regression)
+
+
+@njit(cache=True)
+def _sacral_angle(regression: Array, t: float, k: float) -> float:
+    constant, b0, bt, bk, btk, btt, bkk = regression
+    beta = b0 + bt * t + bk * k + btk * t * k + btt * t * t + bkk * k * k
+    return float(constant + beta)
+
+
 def sacral_angle(trunk_flexion: float, knee_angle: float) -> float:
     """Return the sacral end plate's angle to the horizontal by Chaffin, Andersson and Martin, deg.
 
@@ -108,17 +164,46 @@ def sacral_angle(trunk_flexion: float, knee_angle: float) -> float:
     knee_angle : float
         K, included knee angle, 180 with a straight leg, deg.
     """
-    p = disc_parameters(DiscOption.CHAFFIN)
-    t, k = trunk_flexion, knee_angle
-    beta = (
-        p['beta_0']
-        + p['beta_T'] * t
-        + p['beta_K'] * k
-        + p['beta_TK'] * t * k
-        + p['beta_TT'] * t * t
-        + p['beta_KK'] * k * k
-    )
-    return p['constant'] + beta
+    regression = disc_setting(DiscOption.CHAFFIN).regression
+    angle: float = _sacral_angle(regression, trunk_flexion, knee_angle)
+    return angle
+
+
+@njit(cache=True)
+def leant_forward(frame: Array, angle: float) -> Array:
+    """Return a frame (3, 3), columns forward, left, up, leant forward about its left axis, rad."""
+    c, s = np.cos(angle), np.sin(angle)
+    leant = np.empty((3, 3))
+    for i in range(3):
+        leant[i, 0] = frame[i, 0] * c - frame[i, 2] * s
+        leant[i, 1] = frame[i, 1]
+        leant[i, 2] = frame[i, 0] * s + frame[i, 2] * c
+    return leant
+
+
+@njit(cache=True)
+def disc_rotation_of(
+    setting: DiscSetting, vertebra: Array, trunk: Array, knee_flexion: float
+) -> Array:
+    """Return the rotation of `disc_rotation` for the compiled functions."""
+    upright = np.empty((3, 3))
+    if not setting.by_posture:
+        for i in range(3):
+            # Forward, left, up out of forward, up, right.
+            upright[i, 0] = vertebra[i, 0]
+            upright[i, 1] = -vertebra[i, 2]
+            upright[i, 2] = vertebra[i, 1]
+        return leant_forward(upright, setting.tilt)
+    # In the sagittal plane of the vertebra: its axis to the left, made level.
+    x, z = -vertebra[0, 2], -vertebra[2, 2]
+    size = np.sqrt(x * x + z * z)
+    x, z = x / size, z / size
+    upright[0, 0], upright[1, 0], upright[2, 0] = -z, 0.0, x
+    upright[0, 1], upright[1, 1], upright[2, 1] = x, 0.0, z
+    upright[0, 2], upright[1, 2], upright[2, 2] = 0.0, 1.0, 0.0
+    lean = np.degrees(np.arctan2(trunk[2, 1] * x - trunk[0, 1] * z, trunk[1, 1]))
+    knee = 180.0 - np.degrees(knee_flexion)
+    return leant_forward(upright, np.radians(_sacral_angle(setting.regression, lean, knee)))
 
 
 def disc_rotation(
@@ -136,26 +221,11 @@ def disc_rotation(
     knee_flexion : float
         Mean of both knees, rad; only `chaffin` looks at it.
     """
-    if option is DiscOption.CHAFFIN:
-        # In the sagittal plane of the vertebra: its axis to the left, made level.
-        left = -vertebra[:, 2] + vertebra[1, 2] * np.array([0.0, 1.0, 0.0])
-        left /= np.linalg.norm(left)
-        up = np.array([0.0, 1.0, 0.0])
-        forward = np.cross(left, up)
-        lean = math.degrees(math.atan2(float(trunk[:, 1] @ forward), float(trunk[1, 1])))
-        tilt = math.radians(sacral_angle(lean, 180.0 - math.degrees(knee_flexion)))
-        upright = np.column_stack([forward, left, up])
-    else:
-        tilt = math.radians(disc_parameters(option)['forward_tilt'])
-        upright = vertebra @ FORWARD_LEFT_UP
-    return leant_forward(upright, tilt)
-
-
-def leant_forward(frame: Array, angle: float) -> Array:
-    """Return a frame (3, 3), columns forward, left, up, leant forward about its left axis, rad."""
-    c, s = math.cos(angle), math.sin(angle)
-    leant: Array = frame @ np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
-    return leant
+    vertebra, trunk = (np.ascontiguousarray(r, np.float64) for r in (vertebra, trunk))
+    rotation: Array = disc_rotation_of(
+        disc_setting(option), vertebra, trunk, float(knee_flexion)
+    )
+    return rotation
 
 
 def disc_load(reaction: Array, rotation: Array) -> DiscLoad:
@@ -175,15 +245,4 @@ def disc_load(reaction: Array, rotation: Array) -> DiscLoad:
     """
     if reaction.shape != (6,) or not np.all(np.isfinite(reaction)):
         raise InputArrayError(f'L5-S1 reaction {reaction} is not six finite numbers')
-    force = rotation.T @ reaction[3:]
-    degree = math.pi / 180.0
-    return DiscLoad(
-        force=force,
-        moment=rotation.T @ reaction[:3],
-        compression=float(force[2]),
-        anterior_shear=float(-force[0]),
-        lateral_shear=float(force[1]),
-        # Leaning the normal forward turns it towards x, and x towards -z.
-        compression_per_degree=float(force[0]) * degree,
-        shear_per_degree=float(force[2]) * degree,
-    )
+    return DiscLoad(rotation.T @ reaction[3:], rotation.T @ reaction[:3])

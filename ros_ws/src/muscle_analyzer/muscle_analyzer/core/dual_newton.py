@@ -15,16 +15,38 @@ weights enter through `_minimiser` alone; the reserves are paid for by their squ
 exponent, which keeps the system definite.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
 
 #: A step is taken when the slope of the dual along it has fallen to this share of the first slope.
 SLOPE_SHARE = 0.1
 #: Limit of trials of one line search.
 LINE_TRIALS = 60
+
+
+class Columns(NamedTuple):
+    """
+    Matrix A (n_c, n_m), torque of each muscle at full activation, column by column.
+
+    Attributes
+    ----------
+    start : (n_m + 1,)
+        Entries of column i are ``start[i]`` to ``start[i + 1] - 1``.
+    row : (n,)
+        Row of each entry, rising within a column.
+    value : (n,)
+        The entries [N m].
+    """
+
+    start: IntArray
+    row: IntArray
+    value: Array
 
 
 @njit(cache=True, error_model='numpy')
@@ -48,8 +70,8 @@ def _minimiser(
 
 
 @njit(cache=True, error_model='numpy')
-def _columns(matrix: Array) -> tuple[NDArray[np.int64], NDArray[np.int64], Array]:
-    """Give the non-zero entries of a matrix column by column (start, row, value)."""
+def columns_of(matrix: Array) -> Columns:
+    """Give the non-zero entries of a matrix."""
     n_rows, n_columns = matrix.shape
     start = np.zeros(n_columns + 1, np.int64)
     for j in range(n_rows):
@@ -69,7 +91,7 @@ def _columns(matrix: Array) -> tuple[NDArray[np.int64], NDArray[np.int64], Array
                 row[fill[i]] = j
                 value[fill[i]] = matrix[j, i]
                 fill[i] += 1
-    return start, row, value
+    return Columns(start, row, value)
 
 
 @njit(cache=True, error_model='numpy')
@@ -108,7 +130,7 @@ def _copy(source: Array, target: Array) -> None:
 
 @njit(cache=True, error_model='numpy')
 def _evaluate(
-    columns: tuple[NDArray[np.int64], NDArray[np.int64], Array],
+    columns: Columns,
     reserve: Array,
     torque: Array,
     lower: Array,
@@ -143,7 +165,7 @@ def _evaluate(
 
 @njit(cache=True, error_model='numpy')
 def _hessian(
-    columns: tuple[NDArray[np.int64], NDArray[np.int64], Array],
+    columns: Columns,
     reserve: Array,
     slope: Array,
     hessian: Array,
@@ -164,7 +186,7 @@ def _hessian(
 
 @njit(cache=True, error_model='numpy')
 def solve_dual(
-    matrix: Array,
+    columns: Columns,
     reserve: Array,
     torque: Array,
     lower: Array,
@@ -180,7 +202,7 @@ def solve_dual(
 
     Parameters
     ----------
-    matrix
+    columns
         A (n_c, n_m): moment arm times force at full activation [N m].
     reserve
         D (n_c,): torque of each reserve at unit control [N m], all positive.
@@ -207,8 +229,7 @@ def solve_dual(
     iterations : int
     converged : bool
     """
-    n_c, n_m = matrix.shape
-    columns = _columns(matrix)
+    n_c, n_m = torque.size, lower.size
     activation, slope = np.empty(n_m), np.empty(n_m)
     gradient, step, trial = np.empty(n_c), np.empty(n_c), np.empty(n_c)
     hessian = np.empty((n_c, n_c))

@@ -25,6 +25,7 @@ from importlib.resources import files
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from muscle_analyzer.core.disc_frame import (
@@ -34,9 +35,11 @@ from muscle_analyzer.core.disc_frame import (
     leant_forward,
 )
 from muscle_analyzer.core.exceptions import OptionError
+from muscle_analyzer.core.kinematics import cross3
 from muscle_analyzer.core.multibody import MultibodyModel
 
 Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
 
 #: The joint whose frame depends on the posture with `chaffin`.
 LUMBOSACRAL = 'l5_s1'
@@ -114,6 +117,63 @@ def loaded_joints(model: MultibodyModel) -> tuple[LoadedJoint, ...]:
     )
 
 
+class JointFrames(NamedTuple):
+    """
+    The loaded joints of a model, for the compiled functions.
+
+    Attributes
+    ----------
+    body : (n_j,) int
+        Bodies that the joints carry.
+    sign : (n_j,)
+        1 where that is the upper segment, else -1.
+    frame : (n_j, 3, 3)
+        Body <- anatomical frame.
+    lumbosacral : int
+        Number of L5-S1, whose frame comes from elsewhere.
+    """
+
+    body: IntArray
+    sign: Array
+    frame: Array
+    lumbosacral: int
+
+
+@njit(cache=True, error_model='numpy')
+def joint_loads(
+    joints: JointFrames,
+    reactions: Array,
+    centres: Array,
+    rotations: Array,
+    lumbosacral: Array,
+    force: Array,
+    moment: Array,
+) -> None:
+    """
+    Put forces and moments of all joints into the last two (n_j, 3).
+
+    The others are those of `JointLoadFrames.loads`.
+    """
+    frame = np.empty((3, 3))
+    for j in range(joints.body.size):
+        b, sign = joints.body[j], joints.sign[j]
+        for i in range(3):
+            for k in range(3):
+                frame[i, k] = lumbosacral[i, k]
+                if j != joints.lumbosacral:
+                    frame[i, k] = 0.0
+                    for m in range(3):
+                        frame[i, k] += rotations[b, i, m] * joints.frame[j, m, k]
+        fx, fy, fz = sign * reactions[b, 3], sign * reactions[b, 4], sign * reactions[b, 5]
+        mx, my, mz = cross3(centres[b, 0], centres[b, 1], centres[b, 2], fx, fy, fz)
+        mx = sign * reactions[b, 0] - mx
+        my = sign * reactions[b, 1] - my
+        mz = sign * reactions[b, 2] - mz
+        for k in range(3):
+            force[j, k] = frame[0, k] * fx + frame[1, k] * fy + frame[2, k] * fz
+            moment[j, k] = frame[0, k] * mx + frame[1, k] * my + frame[2, k] * mz
+
+
 class JointLoadFrames:
     """
     Turns the reactions of a model's joints into their anatomical frames.
@@ -134,10 +194,12 @@ class JointLoadFrames:
     def __init__(self, model: MultibodyModel, option: DiscOption) -> None:
         joints = loaded_joints(model)
         self.names = tuple(joint.name for joint in joints)
-        self._bodies = np.array([model.body_index(joint.body) for joint in joints])
-        self._sign = np.array([1.0 if joint.upper else -1.0 for joint in joints])
-        self._lumbosacral = self.names.index(LUMBOSACRAL)
-        self._frames = np.array([_frame(joint, option) for joint in joints])
+        self.joints = JointFrames(
+            np.array([model.body_index(joint.body) for joint in joints], np.int64),
+            np.array([1.0 if joint.upper else -1.0 for joint in joints]),
+            np.array([_frame(joint, option) for joint in joints]),
+            self.names.index(LUMBOSACRAL),
+        )
 
     def loads(
         self, reactions: Array, centres: Array, rotations: Array, lumbosacral: Array
@@ -156,14 +218,10 @@ class JointLoadFrames:
         lumbosacral : (3, 3)
             Ground <- L5-S1 disc.
         """
-        wrench = self._sign[:, None] * reactions[self._bodies]
-        force = wrench[:, 3:]
-        moment = wrench[:, :3] - np.cross(centres[self._bodies], force)
-        frames = rotations[self._bodies] @ self._frames
-        frames[self._lumbosacral] = lumbosacral
-        return JointLoad(
-            np.einsum('jik,ji->jk', frames, force), np.einsum('jik,ji->jk', frames, moment)
-        )
+        force, moment = np.empty((2, len(self.names), 3))
+        disc = np.ascontiguousarray(lumbosacral)
+        joint_loads(self.joints, reactions, centres, rotations, disc, force, moment)
+        return JointLoad(force, moment)
 
 
 def _frame(joint: LoadedJoint, option: DiscOption) -> Array:
@@ -172,4 +230,7 @@ def _frame(joint: LoadedJoint, option: DiscOption) -> Array:
         return FORWARD_LEFT_UP
     parameters = disc_parameters(DiscOption.BRUNO2015)
     own = '' if joint.name == LUMBOSACRAL else f'_{joint.name}'
-    return leant_forward(FORWARD_LEFT_UP, math.radians(parameters[f'forward_tilt{own}']))
+    frame: Array = leant_forward(
+        FORWARD_LEFT_UP, math.radians(parameters[f'forward_tilt{own}'])
+    )
+    return frame

@@ -10,24 +10,38 @@ Everything here is in OpenSim's axes.
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from muscle_analyzer.core.analyzer_options import MuscleAnalyzerOptions
-from muscle_analyzer.core.disc_frame import DiscLoad, disc_load, disc_option, disc_rotation
-from muscle_analyzer.core.inverse_dynamics import inverse_dynamics, wrench_at
+from muscle_analyzer.core.disc_frame import DiscLoad, disc_option, disc_setting
+from muscle_analyzer.core.exceptions import InputArrayError
+from muscle_analyzer.core.frame import (
+    ANSWER,
+    ASK,
+    WHOLE,
+    FrameLoads,
+    FrameModel,
+    no_loads,
+    solve_frames,
+)
 from muscle_analyzer.core.joint_loads import JointLoad, JointLoadFrames, lumbosacral_body
-from muscle_analyzer.core.joint_reaction import NetMoment, joint_reactions, net_moment
-from muscle_analyzer.core.kinematics import body_jacobians, forward_kinematics
+from muscle_analyzer.core.joint_reaction import NetMoment
 from muscle_analyzer.core.multibody import MultibodyModel
 from muscle_analyzer.core.muscle_curves import MuscleParameters
 from muscle_analyzer.core.muscle_path_table import path_table
-from muscle_analyzer.core.muscle_paths import body_wrenches, posture_paths
 from muscle_analyzer.core.recruitment import least_activations, muscle_weights
 from muscle_analyzer.core.reserves import read_reserves
-from muscle_analyzer.core.static_optimization import MuscleBalance, StaticOptimization
+from muscle_analyzer.core.static_optimization import (
+    Criterion,
+    MuscleBalance,
+    Outcome,
+    StaticOptimization,
+)
+from muscle_analyzer.core.torque_sharing import Account
 
 Array = NDArray[np.float64]
 
@@ -37,6 +51,7 @@ KNEES = ('knee_angle_r', 'knee_angle_l')
 ROOT_COORDINATES = 'pelvis_'
 #: Coordinates of the lumbar joints: every muscle that crosses L5-S1 works on them.
 LUMBAR_COORDINATES = 'L5_S1_'
+_NOTHING = np.empty((0, 0, 0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,32 +111,43 @@ class LoadSolver:
     def __init__(self, model: MultibodyModel, options: MuscleAnalyzerOptions) -> None:
         self.model = model
         self.disc = disc_option(options.disc_frame)
-        self._options = options
-        lumbosacral = lumbosacral_body(model)
-        self._root, self._l5, self._thorax = map(model.body_index, (ROOT, lumbosacral, THORAX))
-        self._knees = [model.coordinate_index(name) for name in KNEES]
         names = model.coordinate_names
-        self._balanced = np.array(
-            [k for k, name in enumerate(names) if not name.startswith(ROOT_COORDINATES)]
-        )
+        balanced = [k for k, name in enumerate(names) if not name.startswith(ROOT_COORDINATES)]
+        row = np.full(len(names), -1, np.int64)
+        row[balanced] = np.arange(len(balanced))
         self.muscle_names = tuple(muscle.name for muscle in model.source.muscles)
-        self.coordinate_names = tuple(names[k] for k in self._balanced)
+        self.coordinate_names = tuple(names[k] for k in balanced)
         self.lumbar = tuple(name for name in names if name.startswith(LUMBAR_COORDINATES))
-        self._table = path_table(model, options.geodesic_wrapping)
-        self._muscles = MuscleParameters.of(model.source.muscles)
-        self._frames = JointLoadFrames(model, self.disc)
-        self.joint_names = self._frames.names
-        self._optimization = StaticOptimization(
+        muscles = MuscleParameters.of(model.source.muscles)
+        frames = JointLoadFrames(model, self.disc)
+        self.joint_names = frames.names
+        self.optimization = StaticOptimization(
             self.muscle_names,
             read_reserves(self.coordinate_names),
             options.static_optimization,
-            muscle_weights(self._muscles, options.muscle_weighting),
+            muscle_weights(muscles, options.muscle_weighting),
             least_activations(self.muscle_names, options.abdominal_activation),
+        )
+        self._frame = FrameModel(
+            tree=model.tree,
+            paths=path_table(model, options.geodesic_wrapping),
+            muscles=muscles,
+            actuators=self.optimization.actuators,
+            joints=frames.joints,
+            disc=disc_setting(self.disc),
+            balanced=np.array(balanced, np.int64),
+            row=row,
+            root=model.body_index(ROOT),
+            lumbosacral=model.body_index(lumbosacral_body(model)),
+            thorax=model.body_index(THORAX),
+            knees=np.array([model.coordinate_index(name) for name in KNEES], np.int64),
+            force_length_velocity=bool(options.force_length_velocity),
+            passive_force=bool(options.passive_force),
         )
 
     def reset(self) -> None:
         """Forget the state solved before."""
-        self._optimization.reset()
+        self.optimization.reset()
 
     def solve(self, q: Array, qd: Array, qdd: Array, external: Array) -> LoadSolution:
         """
@@ -139,40 +165,92 @@ class LoadSolver:
         InputArrayError
             If a torque or moment arm is not finite.
         """
-        tree = self.model.tree
-        state = forward_kinematics(tree, q, qd, qdd)
-        dynamics = inverse_dynamics(tree, state, external)
-        jacobian = body_jacobians(tree, state)
-        paths = posture_paths(self._table, state, jacobian)
-        if self._options.force_length_velocity:
-            speed = -paths.moment_arm @ qd
-            strength = self._muscles.state(paths.length, speed, self._options.passive_force)
-        else:
-            strength = self._muscles.isometric()
-        arms = paths.moment_arm[:, self._balanced].T
-        torque = dynamics.force[self._balanced]
-        balance = self._optimization.solve(
-            arms * strength.active, torque - arms @ strength.passive
-        )
-        force = balance.activation * strength.active + strength.passive
+        began = time.perf_counter()
+        loads = self.solve_block(q[None], qd[None], qdd[None], external[None])
+        return self.solution(loads, 0, time.perf_counter() - began)
 
-        pulls = body_wrenches(self._table, paths.wrench, force, len(self.model.body_names))
-        reactions = joint_reactions(tree, dynamics.joint_wrench, pulls)
-        reaction = wrench_at(reactions[self._l5], state.joint_position[self._l5])
-        knee = float(np.mean(q[self._knees]))
-        rotation = disc_rotation(
-            self.disc, state.rotation[self._l5], state.rotation[self._thorax], knee
+    def solve_block(self, q: Array, qd: Array, qdd: Array, external: Array) -> FrameLoads:
+        """
+        Solve states that follow each other.
+
+        Parameters
+        ----------
+        q, qd, qdd : (n, n_q)
+        external : (n, n_b, 6)
+            As in `solve`.
+
+        Raises
+        ------
+        InputArrayError
+            If a torque or moment arm is not finite.
+        """
+        motion = (
+            np.ascontiguousarray(q, np.float64),
+            np.ascontiguousarray(qd, np.float64),
+            np.ascontiguousarray(qdd, np.float64),
+            np.ascontiguousarray(external, np.float64),
         )
-        converged = balance.converged
+        out = no_loads(self._frame, len(q))
+        if self.optimization.criterion is Criterion.MIN_MAX:
+            self._min_max(motion, out)
+        else:
+            solve_frames(self._frame, *motion, WHOLE, self.optimization.start, out, _NOTHING)
+            self._check(out)
+        return out
+
+    def solution(self, loads: FrameLoads, k: int, solve_time: float) -> LoadSolution:
+        """
+        Give the loads in one state of a block.
+
+        Parameters
+        ----------
+        loads
+            Of the block.
+        k
+            Number of the state.
+        solve_time
+            To be reported [s].
+        """
+        outcome = Outcome(
+            loads.activation[k], loads.reserve[k], loads.multiplier[k], loads.residual[k],
+            loads.weak[k], int(loads.iterations[k]), bool(loads.converged[k]),
+        )  # fmt: skip
+        balance = self.optimization.balance(outcome, Account(*loads.account[k]), 0.0, solve_time)
+        joints = JointLoad(loads.joint_force[k], loads.joint_moment[k])
+        l5 = self._frame.joints.lumbosacral
+        above, below = loads.net_moment[k]
         return LoadSolution(
-            force=force,
-            torque=torque,
+            force=loads.force[k],
+            torque=loads.torque[k],
             balance=balance,
-            reaction=reaction,
-            disc=disc_load(reaction, rotation) if converged else None,
-            joints=self._frames.loads(
-                reactions, state.joint_position, state.rotation, rotation
-            ),
-            net=net_moment(dynamics.joint_wrench, state, self._l5, self._root),
-            residual=wrench_at(dynamics.joint_wrench[self._root], state.position[self._root]),
+            reaction=loads.reaction[k],
+            disc=DiscLoad(joints.force[l5], joints.moment[l5]) if outcome.converged else None,
+            joints=joints,
+            net=NetMoment(above, below, above - below),
+            residual=loads.pelvis_residual[k],
+        )
+
+    def _min_max(self, motion: tuple[Array, Array, Array, Array], out: FrameLoads) -> None:
+        """Solve states with the criterion that has an optimiser of its own."""
+        n = len(out.wrong)
+        matrix = np.zeros((n, len(self.coordinate_names), len(self.muscle_names)))
+        frame, optimization = self._frame, self.optimization
+        solve_frames(frame, *motion, ASK, optimization.start, out, matrix)
+        self._check(out)
+        for k in range(n):
+            outcome, found = optimization.share(matrix[k], out.to_balance[k])
+            out.activation[k], out.reserve[k] = outcome.activation, outcome.reserve
+            out.multiplier[k], out.residual[k] = outcome.multiplier, outcome.residual
+            out.iterations[k], out.converged[k] = outcome.iterations, outcome.converged
+            out.weak[k], out.account[k] = outcome.weak, found
+        solve_frames(frame, *motion, ANSWER, optimization.start, out, matrix)
+
+    def _check(self, loads: FrameLoads) -> None:
+        if loads.wrong.max(initial=-1) < 0:
+            return
+        k = int(np.argmax(loads.wrong >= 0))
+        j = int(loads.wrong[k])
+        raise InputArrayError(
+            f'coordinate {self.coordinate_names[j]}: torque {loads.torque[k, j]} or moment arms '
+            'are not finite'
         )

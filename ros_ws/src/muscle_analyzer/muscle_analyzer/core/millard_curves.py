@@ -15,8 +15,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from muscle_analyzer.core.exceptions import OsimFormatError
@@ -73,38 +75,60 @@ class SampledCurve:
     slope: Array
 
 
-class CurveTable:
+class CurveTable(NamedTuple):
     """
-    Curves of many muscles, most of which share one.
+    Different curves, for the compiled functions.
+
+    Attributes
+    ----------
+    lower, step : (n_k,)
+        First point of each curve's grid and distance of its points.
+    value, slope : (n_k, n)
+        Of each curve at the points of its grid.
+    """
+
+    lower: Array
+    step: Array
+    value: Array
+    slope: Array
+
+
+def curve_table(curves: Sequence[SampledCurve]) -> CurveTable:
+    """Put curves into one table, in their order."""
+    return CurveTable(
+        np.array([curve.lower for curve in curves]),
+        np.array([curve.step for curve in curves]),
+        np.array([curve.value for curve in curves]).reshape(-1, _NODES),
+        np.array([curve.slope for curve in curves]).reshape(-1, _NODES),
+    )
+
+
+@njit(cache=True, error_model='numpy')
+def curve_value(
+    lower: Array, step: Array, value: Array, slope: Array, curve: int, x: float
+) -> float:
+    """
+    Give the value of a curve at x.
 
     Parameters
     ----------
-    curves
-        The curve of each muscle; equal ones may be one object.
+    lower, step, value, slope
+        Of a `CurveTable`.
+    curve
+        Number of the curve in it.
+    x
+        Where.
     """
-
-    def __init__(self, curves: Sequence[SampledCurve]) -> None:
-        different = list({id(curve): curve for curve in curves}.values())
-        place = {id(curve): row for row, curve in enumerate(different)}
-        row = np.array([place[id(curve)] for curve in curves], np.int64)
-        self._row = row
-        self._lower = np.array([curve.lower for curve in different])[row]
-        self._step = np.array([curve.step for curve in different])[row]
-        self._value = np.array([curve.value for curve in different])
-        self._slope = np.array([curve.slope for curve in different])
-
-    def __call__(self, x: Array) -> Array:
-        """Give each muscle's value at its own x (n,)."""
-        place = (x - self._lower) / self._step
-        inside = np.clip(place, 0.0, _NODES - 1.0)
-        k = np.minimum(inside.astype(np.int64), _NODES - 2)
-        t = inside - k
-        row, rest = self._row, 1.0 - t
-        y0, y1 = self._value[row, k], self._value[row, k + 1]
-        m0, m1 = self._slope[row, k] * self._step, self._slope[row, k + 1] * self._step
-        curve = rest**2 * ((1.0 + 2.0 * t) * y0 + t * m0)
-        curve += t**2 * ((3.0 - 2.0 * t) * y1 - rest * m1)
-        return np.asarray(curve + (place - inside) * np.where(place < 0.0, m0, m1))
+    place = (x - lower[curve]) / step[curve]
+    inside = min(max(place, 0.0), _NODES - 1.0)
+    k = min(int(inside), _NODES - 2)
+    t = inside - k
+    rest = 1.0 - t
+    y0, y1 = value[curve, k], value[curve, k + 1]
+    m0, m1 = slope[curve, k] * step[curve], slope[curve, k + 1] * step[curve]
+    between = rest**2 * ((1.0 + 2.0 * t) * y0 + t * m0)
+    between += t**2 * ((3.0 - 2.0 * t) * y1 - rest * m1)
+    return float(between + (place - inside) * (m0 if place < 0.0 else m1))
 
 
 def corner(
@@ -217,55 +241,59 @@ def passive_curve(properties: Mapping[str, float]) -> SampledCurve:
     )
 
 
-class MillardCurves:
+class MillardCurves(NamedTuple):
     """
-    Multipliers of the Millard muscles among a model's muscles.
-
-    Parameters
-    ----------
-    muscles
-        All muscles of a model.
+    Curves of a model's Millard muscles.
 
     Attributes
     ----------
-    members : (n,)
-        Which of them have these curves.
+    table : CurveTable
+        The different curves.
+    number : (n_m, 3) int
+        Those of each muscle of the model: active and passive force over length, force over
+        velocity; -1 for muscles of other kinds.
+    """
+
+    table: CurveTable
+    number: IntArray
+
+
+def millard_curves(muscles: Sequence[Muscle]) -> MillardCurves:
+    """
+    Build the curves of a model's muscles, each that several muscles have once.
 
     Raises
     ------
     OsimFormatError
         If the properties of a curve contradict each other; names the muscle.
     """
+    known: dict[tuple[str, tuple[tuple[str, float], ...]], int] = {}
+    curves: list[SampledCurve] = []
+    number = np.full((len(muscles), 3), -1, np.int64)
+    for i, muscle in enumerate(muscles):
+        if muscle.kind != KIND:
+            continue
+        for place, (tag, defaults, build) in enumerate(_CURVES):
+            own = {
+                name.removeprefix(f'{tag}/'): value
+                for name, value in muscle.properties.items()
+                if name.startswith(f'{tag}/')
+            }
+            properties = {**defaults, **own}
+            key = (tag, tuple(sorted(properties.items())))
+            if key not in known:
+                try:
+                    curves.append(build(properties))
+                except OsimFormatError as error:
+                    raise OsimFormatError(f'muscle {muscle.name} <{tag}>: {error}') from error
+                known[key] = len(curves) - 1
+            number[i, place] = known[key]
+    return MillardCurves(curve_table(curves), number)
 
-    def __init__(self, muscles: Sequence[Muscle]) -> None:
-        self.members = np.array([k for k, m in enumerate(muscles) if m.kind == KIND], np.int64)
-        of_kind = [muscles[k] for k in self.members]
-        self.active = _table(of_kind, 'ActiveForceLengthCurve', ACTIVE, active_curve)
-        self.rate = _table(of_kind, 'ForceVelocityCurve', VELOCITY, velocity_curve)
-        self.passive = _table(of_kind, 'FiberForceLengthCurve', PASSIVE, passive_curve)
 
-
-def _table(
-    muscles: Sequence[Muscle],
-    tag: str,
-    defaults: Mapping[str, float],
-    build: Callable[[Mapping[str, float]], SampledCurve],
-) -> CurveTable:
-    """Build the curves of one kind, each that several muscles have once."""
-    known: dict[tuple[tuple[str, float], ...], SampledCurve] = {}
-    curves = []
-    for muscle in muscles:
-        own = {
-            name.removeprefix(f'{tag}/'): value
-            for name, value in muscle.properties.items()
-            if name.startswith(f'{tag}/')
-        }
-        properties = {**defaults, **own}
-        key = tuple(sorted(properties.items()))
-        if key not in known:
-            try:
-                known[key] = build(properties)
-            except OsimFormatError as error:
-                raise OsimFormatError(f'muscle {muscle.name} <{tag}>: {error}') from error
-        curves.append(known[key])
-    return CurveTable(curves)
+_CURVES: tuple[tuple[str, Mapping[str, float], Callable[[Mapping[str, float]], SampledCurve]], ...]
+_CURVES = (
+    ('ActiveForceLengthCurve', ACTIVE, active_curve),
+    ('FiberForceLengthCurve', PASSIVE, passive_curve),
+    ('ForceVelocityCurve', VELOCITY, velocity_curve),
+)

@@ -13,29 +13,29 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from human_model.report import SolveReport, SolveStatus
-from muscle_analyzer.core.dual_newton import solve_dual
+from muscle_analyzer.core.dual_newton import columns_of
 from muscle_analyzer.core.exceptions import InputArrayError, OptionError
 from muscle_analyzer.core.min_max import SQUARES_SHARE, solve_min_max
 from muscle_analyzer.core.reserves import Reserve
+from muscle_analyzer.core.torque_sharing import (
+    Account,
+    Actuators,
+    account,
+    residual_limit,
+    share_torque,
+)
 
 Array = NDArray[np.float64]
 
 #: Smallest activation OpenSim 4.6 allows a muscle in static optimisation (``min_control`` of
 #: the muscles of the lifting full-body model).
 MINIMUM_ACTIVATION = 0.01
-#: A coordinate is not balanced by its muscles when the reserve takes more than this share of the
-#: net moment of its joint, all coordinates of the joint together: half of what OpenSim's guide
-#: allows (page "Reserves and Residuals": peak reserve below 10 % of the peak joint torque), and
-#: the share of the external force that Hicks et al. 2015 (J Biomech Eng 137:020905, section
-#: 3.1.3) allow residual forces ...
-RESERVE_SHARE = 0.05
-#: ... and more than its unit torque, below which a share means nothing.
-RESERVE_CONTROL = 1.0
 #: An activation nearer than this to its bound is at it: interior-point solutions come close.
 AT_BOUND = 1e-8
 #: So many coordinates or muscles are named in a report.
@@ -83,6 +83,30 @@ class StaticOptimizationOptions:
     max_iterations: int = 100
 
 
+class Outcome(NamedTuple):
+    """
+    What the optimisation found in one frame.
+
+    Attributes
+    ----------
+    activation : (n_m,)
+    reserve, multiplier, residual : (n_c,)
+        Torque the reserves take [N m], dual solution [1 / (N m)], what is not balanced [N m].
+    weak : (n_c,) bool
+        Whether the muscles of a coordinate are too weak.
+    iterations : int
+    converged : bool
+    """
+
+    activation: Array
+    reserve: Array
+    multiplier: Array
+    residual: Array
+    weak: NDArray[np.bool_]
+    iterations: int
+    converged: bool
+
+
 @dataclass(frozen=True)
 class MuscleBalance:
     """
@@ -95,6 +119,8 @@ class MuscleBalance:
         Torque the reserves take [N m].
     multiplier : (n_c,)
         Dual solution, the warm start of the next frame [1 / (N m)].
+    residual : (n_c,)
+        What is not balanced [N m].
     at_lower, at_upper : (n_m,) bool
         Active sets.
     unbalanced : tuple of str
@@ -106,6 +132,7 @@ class MuscleBalance:
     activation: Array
     reserve: Array
     multiplier: Array
+    residual: Array
     at_lower: NDArray[np.bool_]
     at_upper: NDArray[np.bool_]
     unbalanced: tuple[str, ...]
@@ -169,28 +196,35 @@ class StaticOptimization:
                     f'reserve of {reserve.coordinate}: torque {reserve.torque} N m must be '
                     'positive: without it a weak muscle leaves no solution'
                 )
-        self._unit = np.array([reserve.torque for reserve in reserves])
-        self._muscle_driven = np.array([reserve.muscle_driven for reserve in reserves], np.bool_)
-        self._lower = np.full(len(muscle_names), low)
+        lower = np.full(len(muscle_names), low)
         if least_activation is not None:
-            self._lower = np.maximum(self._lower, least_activation)
-        if self._lower.size and not self._lower.max() < high:
-            i = int(self._lower.argmax())
+            lower = np.maximum(lower, least_activation)
+        if lower.size and not lower.max() < high:
+            i = int(lower.argmax())
             raise OptionError(
-                f'least activation of {muscle_names[i]}: {self._lower[i]} must be below '
+                f'least activation of {muscle_names[i]}: {lower[i]} must be below '
                 f'maximum_activation {high}'
             )
-        self._upper = np.full(len(muscle_names), high)
-        self._weight = np.ones(len(muscle_names)) if weight is None else np.array(weight, float)
-        if not (np.isfinite(self._weight) & (self._weight > 0.0)).all():
+        weight = np.ones(len(muscle_names)) if weight is None else np.array(weight, np.float64)
+        if not (np.isfinite(weight) & (weight > 0.0)).all():
             raise OptionError('weight: every muscle needs a positive weight in the cost')
-        joints = np.array([reserve.joint for reserve in reserves])
-        self._same_joint = (joints[:, None] == joints[None, :]).astype(np.float64)
-        self._multiplier = np.zeros(len(reserves))
+        joints = list(dict.fromkeys(reserve.joint for reserve in reserves))
+        self.actuators = Actuators(
+            unit=np.array([reserve.torque for reserve in reserves], np.float64),
+            muscle_driven=np.array([reserve.muscle_driven for reserve in reserves], np.bool_),
+            joint=np.array([joints.index(reserve.joint) for reserve in reserves], np.int64),
+            lower=lower,
+            upper=np.full(len(muscle_names), high, np.float64),
+            weight=weight,
+            exponent=EXPONENTS[self.criterion],
+            tolerance=float(self.options.tolerance),
+            max_iterations=int(self.options.max_iterations),
+        )
+        self.start = np.zeros(len(reserves))
 
     def reset(self) -> None:
         """Forget the previous frame."""
-        self._multiplier = np.zeros(len(self.coordinate_names))
+        self.start = np.zeros(len(self.coordinate_names))
 
     def solve(self, matrix: Array, torque: Array) -> MuscleBalance:
         """
@@ -210,80 +244,82 @@ class StaticOptimization:
         """
         began = time.perf_counter()
         matrix, torque = self._checked(matrix, torque)
-        unit = self._unit
-        tolerance = self.options.tolerance * max(1.0, float(np.abs(torque).max(initial=0.0)))
-        multiplier = self._multiplier.copy()
         built = time.perf_counter()
-        activation, residual, iterations, converged, cap = self._run(
-            matrix, torque, multiplier, tolerance
-        )
-        if not converged:
-            # A start far from this frame's solution: once more from nothing.
-            multiplier[:] = 0.0
-            activation, residual, more, converged, cap = self._run(
-                matrix, torque, multiplier, tolerance
-            )
-            iterations += more
-        self._multiplier = multiplier if converged else np.zeros_like(multiplier)
-        solved = time.perf_counter()
+        outcome, found = self.share(matrix, torque)
+        return self.balance(outcome, found, built - began, time.perf_counter() - built)
 
-        control = 0.5 * unit * multiplier
-        gradient = self._gradient(activation) - matrix.T @ multiplier
-        upper = np.minimum(self._upper, cap)
-        projected = np.clip(activation - gradient, self._lower, upper)
-        reserve = unit * control
-        joint_moment = np.sqrt(self._same_joint @ torque**2)
-        weak = self._muscle_driven & (np.abs(reserve) > RESERVE_SHARE * joint_moment)
-        weak &= np.abs(control) > RESERVE_CONTROL
-        unbalanced = tuple(np.array(self.coordinate_names)[weak].tolist())
-        at_upper = activation >= self._upper - AT_BOUND
-        status, message = self._verdict(converged, residual, reserve, weak, at_upper)
-        report = SolveReport(
-            status=status,
-            message=message,
-            iterations=int(iterations),
-            objective=self._cost(activation, cap) + float(control @ control),
-            primal_residual=float(np.abs(residual).max(initial=0.0)),
-            dual_residual=float(np.abs(projected - activation).max(initial=0.0)),
-            build_time=built - began,
-            solve_time=solved - built,
-        )
-        return MuscleBalance(
-            activation=activation,
-            reserve=reserve,
-            multiplier=multiplier,
-            at_lower=activation <= self._lower + AT_BOUND,
-            at_upper=at_upper,
-            unbalanced=unbalanced,
-            report=report,
-        )
-
-    def _run(
-        self, matrix: Array, torque: Array, multiplier: Array, tolerance: float
-    ) -> tuple[Array, Array, int, bool, float]:
-        """Give activations, residual, steps, success and the largest activation allowed."""
-        fixed = (matrix, self._unit, torque, self._lower, self._upper, self._weight)
-        limit = self.options.max_iterations
+    def share(self, matrix: Array, torque: Array) -> tuple[Outcome, Account]:
+        """Share the torques of one frame as `solve`, whose input has been checked."""
+        columns = columns_of(matrix)
+        multiplier = self.start.copy()
+        share, cap, at_top = 1.0, np.inf, 0.0
         if self.criterion is Criterion.MIN_MAX:
-            # The small curvature of its cost magnifies the rounding of the multipliers.
-            return solve_min_max(*fixed, multiplier, 8.0 * tolerance, limit)
-        exponent = EXPONENTS[self.criterion]
-        solution = solve_dual(*fixed, exponent, multiplier, tolerance, limit)
-        return *solution, self.options.maximum_activation
+            activation, residual, iterations, converged, cap = self._min_max(
+                matrix, torque, multiplier
+            )
+            share, at_top = SQUARES_SHARE, cap
+        else:
+            activation, residual, iterations, converged = share_torque(
+                self.actuators, columns, torque, multiplier
+            )
+        self.start = multiplier if converged else np.zeros_like(multiplier)
+        reserve, weak = np.empty(torque.size), np.empty(torque.size, np.bool_)
+        found = account(
+            self.actuators, columns, torque, activation, residual, multiplier, share, cap,
+            reserve, weak,
+        )  # fmt: skip
+        found = found._replace(objective=found.objective + at_top)
+        outcome = Outcome(activation, reserve, multiplier, residual, weak, iterations, converged)
+        return outcome, found
 
-    def _share(self) -> float:
-        """Give the factor of the powers in the cost."""
-        return SQUARES_SHARE if self.criterion is Criterion.MIN_MAX else 1.0
+    def balance(
+        self, outcome: Outcome, found: Account, build_time: float, solve_time: float
+    ) -> MuscleBalance:
+        """
+        Put a solution into words.
 
-    def _gradient(self, activation: Array) -> Array:
-        """Give the derivative of the powers in the cost by each activation (n_m,)."""
-        exponent = EXPONENTS[self.criterion]
-        return self._share() * exponent * self._weight * activation ** (exponent - 1.0)
+        Parameters
+        ----------
+        outcome
+            The solution.
+        found
+            Account of it.
+        build_time, solve_time
+            To build and to solve the problem [s].
+        """
+        at_upper = outcome.activation >= self.actuators.upper - AT_BOUND
+        status, message = self._verdict(outcome, at_upper)
+        return MuscleBalance(
+            activation=outcome.activation,
+            reserve=outcome.reserve,
+            multiplier=outcome.multiplier,
+            residual=outcome.residual,
+            at_lower=outcome.activation <= self.actuators.lower + AT_BOUND,
+            at_upper=at_upper,
+            unbalanced=tuple(self.coordinate_names[j] for j in np.flatnonzero(outcome.weak)),
+            report=SolveReport(
+                status=status,
+                message=message,
+                iterations=int(outcome.iterations),
+                objective=float(found.objective),
+                primal_residual=float(found.primal),
+                dual_residual=float(found.dual),
+                build_time=build_time,
+                solve_time=solve_time,
+            ),
+        )
 
-    def _cost(self, activation: Array, cap: float) -> float:
-        """Give the cost of the activations, without reserves."""
-        powers = self._share() * float(self._weight @ activation ** EXPONENTS[self.criterion])
-        return powers + (cap if self.criterion is Criterion.MIN_MAX else 0.0)
+    def _min_max(
+        self, matrix: Array, torque: Array, multiplier: Array
+    ) -> tuple[Array, Array, int, bool, float]:
+        """Give activations, residual, steps, success and the largest activation."""
+        a = self.actuators
+        # The small curvature of its cost magnifies the rounding of the multipliers.
+        limit = 8.0 * residual_limit(a, torque)
+        return solve_min_max(
+            matrix, a.unit, torque, a.lower, a.upper, a.weight, multiplier, limit,
+            a.max_iterations,
+        )  # fmt: skip
 
     def _checked(self, matrix: Array, torque: Array) -> tuple[Array, Array]:
         """Give the input as contiguous arrays of the right shape and finite numbers."""
@@ -305,24 +341,22 @@ class StaticOptimization:
         return matrix, torque
 
     def _verdict(
-        self,
-        converged: bool,
-        residual: Array,
-        reserve: Array,
-        weak: NDArray[np.bool_],
-        at_upper: NDArray[np.bool_],
+        self, outcome: Outcome, at_upper: NDArray[np.bool_]
     ) -> tuple[SolveStatus, str]:
         """Say what happened, naming coordinates and muscles."""
-        if not converged:
-            j = int(np.abs(residual).argmax())
+        if not outcome.converged:
+            j = int(np.abs(outcome.residual).argmax())
             return SolveStatus.MUSCLE_NOT_CONVERGED, (
                 f'static optimisation not converged: {self.coordinate_names[j]} is off by '
-                f'{residual[j]:.3g} N m'
+                f'{outcome.residual[j]:.3g} N m'
             )
-        full = [self.muscle_names[i] for i in np.flatnonzero(at_upper)]
-        bound = f'at full activation: {_some(full)}' if full else ''
-        if weak.any():
-            order = sorted(np.flatnonzero(weak), key=lambda j: -abs(reserve[j]))
+        bound = ''
+        if at_upper.any():
+            full = [self.muscle_names[i] for i in np.flatnonzero(at_upper)]
+            bound = f'at full activation: {_some(full)}'
+        if outcome.weak.any():
+            reserve = outcome.reserve
+            order = sorted(np.flatnonzero(outcome.weak), key=lambda j: -abs(reserve[j]))
             parts = [f'{self.coordinate_names[j]} by {reserve[j]:.1f} N m' for j in order]
             text = f'muscles too weak, reserves help {_some(parts)}'
             return SolveStatus.MUSCLE_TOO_WEAK, f'{text}; {bound}' if bound else text
