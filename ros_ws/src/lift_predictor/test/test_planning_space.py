@@ -141,6 +141,26 @@ def test_candidates_for_the_feet_are_allowed_and_differ() -> None:
     assert not allowed(Feet(-FARTHEST, 0.0), task)
 
 
+def test_free_feet_are_the_best_that_were_tried(planner, subject, monkeypatch) -> None:
+    monkeypatch.setattr('lift_predictor.core.planning.space.feet.HALVINGS', -1)
+    told = []
+    task = replace(TASK, feet=None, start=(0.4, -0.2, 0.5))
+    planned = planner.plan(subject, task, told.append)
+    assert planned.report.ok, planned.report.message
+    assert len(planned.placements) == len(candidates(task))
+    best = min(planned.placements, key=lambda placement: placement.value)
+    assert (planned.ankle, planned.left, planned.heading) == (best.ankle, best.left, best.heading)
+    # A margin between the nodes costs a little.
+    assert planned.effort <= best.value * 1.01
+    motion = planned.prediction.lift.motion
+    np.testing.assert_allclose(motion.box_position[[0, -1]], [task.start, task.end], atol=1e-3)
+    ankles = 0.5 * (motion.point('ankle_r') + motion.point('ankle_l'))[0]
+    np.testing.assert_allclose(ankles[:2], [planned.ankle, planned.left], atol=1e-6)
+    toe, heel = motion.point('toe_r')[0], motion.point('heel_r')[0]
+    assert np.arctan2(*(toe - heel)[1::-1]) == pytest.approx(planned.heading, abs=1e-6)
+    assert {progress.stage for progress in told} == {'feet', 'lift'}
+
+
 def test_way_to_the_standard_location_keeps_the_side_first() -> None:
     way = way_of(TASK, 'end', Feet(0.0, 0.0, np.pi / 4.0), turned=False)
     assert way.at(1.0, Feet(0.0, 0.0, np.pi / 4.0)) == pytest.approx(TASK.end)
@@ -150,7 +170,8 @@ def test_way_to_the_standard_location_keeps_the_side_first() -> None:
     assert turned.missing(0.5).endswith('lower and 22 deg less to the side')
 
 
-def test_too_high_a_shelf_at_the_side_gives_a_lower_one(planner, subject) -> None:
+def test_too_high_a_shelf_at_the_side_gives_a_lower_one(planner, subject, monkeypatch) -> None:
+    monkeypatch.setattr('lift_predictor.core.nearest_lift.PLACE_TOLERANCE', 0.2)
     high = replace(TASK, end=(0.25, 0.25, subject.stature + 0.6))
     planned = planner.plan(subject, high)
     assert planned.report.status is SolveStatus.PREDICTOR_UNREACHABLE

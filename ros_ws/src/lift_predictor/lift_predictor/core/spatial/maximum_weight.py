@@ -83,7 +83,7 @@ def maximum_weight(
         Told after each run; what it raises ends the work there.
     """
     weighting = weighting or Weighting()
-    pure = _with_objective(task, (TIE_BREAK, 1.0))
+    pure = for_weight_alone(task)
     far = tuple(
         replace(start, name=f'{start.name}, far', barrier=FAR) for start in starts
     )
@@ -108,6 +108,11 @@ def total_effort(
     motion = sample(predictor.grid, prediction.control, s, prediction.duration)
     loads = evaluate(predictor.library, *motion, prediction.box_mass, task.parameters)
     return float(np.trapezoid(loads.effort, s * prediction.duration))
+
+
+def for_weight_alone(task: SpatialTask) -> SpatialTask:
+    """Task with the largest weight as the only criterion but for a tie-break."""
+    return _with_objective(task, (TIE_BREAK, 1.0))
 
 
 def _with_objective(task: SpatialTask, objective: tuple[float, float]) -> SpatialTask:

@@ -42,13 +42,14 @@ from lift_predictor.core.spatial.programme import (
     spatial_programme,
 )
 from lift_predictor.core.spatial.recorded_task import recorded_task
+from lift_predictor.core.spatial.refine import Refiner
 from lift_predictor.core.spatial.starts import SpatialStart, recorded_starts
 from lift_predictor.core.spatial.task import (
     SpatialTask,
     Windows,
     without_ground_windows,
 )
-from lift_predictor.core.spatial.verify import SpatialVerification, verify
+from lift_predictor.core.spatial.verify import SpatialVerification
 
 Array = NDArray[np.float64]
 Progress = Callable[[int, int, float], None]
@@ -56,9 +57,6 @@ Progress = Callable[[int, int, float], None]
 
 FOOT_TOLERANCE: Final = 1e-6
 """Distance of the feet from their place above which there are no data [m]."""
-MARGIN_FACTOR: Final = 1.2
-"""Margin against a violation between the nodes, in units of the violation."""
-
 _STATUS: Final = {
     Status.INFEASIBLE: SolveStatus.PREDICTOR_INFEASIBLE,
     Status.TIME_LIMIT: SolveStatus.PREDICTOR_TIME_LIMIT,
@@ -251,9 +249,7 @@ class SpatialPredictor:
         for start in starts:
             if runs and time.perf_counter() > deadline:
                 break
-            runs.append(
-                self._run(task, start.name, start.variables(), warm, start.barrier)
-            )
+            runs.append(self.run(task, start, warm))
             if progress is not None:
                 solved = [run.solution.objective for run in runs if run.converged]
                 progress(len(runs), len(starts), min(solved, default=float('nan')))
@@ -266,52 +262,23 @@ class SpatialPredictor:
                 ),
             )
         )
-        optima, check = self._tighten(task, optima, deadline)
+        refiner = Refiner(self.library, self.grid, self.run, self.options.refinements)
+        optima, check = refiner.best_that_holds(task, optima, deadline)
         return self._finish(task, optima, check, now - begin, time.perf_counter() - now)
 
-    def _run(
-        self,
-        task: SpatialTask,
-        name: str,
-        x0: Array,
-        warm: Solution | None = None,
-        barrier: float | None = None,
+    def run(
+        self, task: SpatialTask, start: SpatialStart, warm: Solution | None = None
     ) -> SpatialOptimum:
+        """Solve a task from one start at the nodes, not checked between them."""
         assembler = self.assembler
         if task.bounds.technique:
             if self._with_technique is None:
                 self._with_technique = spatial_assembler(self.library, self.grid, technique=True)
             assembler = self._with_technique
         programme = spatial_programme(assembler, self.grid, task.parameters, task.bounds)
-        x0 = np.clip(x0, programme.lower, programme.upper)
-        options = self.options.interior_point(barrier)
-        return SpatialOptimum(name, solve(programme, x0, options, warm))
-
-    def _tighten(
-        self, task: SpatialTask, optima: tuple[SpatialOptimum, ...], deadline: float
-    ) -> tuple[tuple[SpatialOptimum, ...], SpatialVerification | None]:
-        """Check the best run between the nodes; solve again with a margin where it fails."""
-        bounds = task.bounds
-        check: SpatialVerification | None = None
-        for attempt in range(self.options.refinements + 1):
-            best = optima[0]
-            if not best.converged:
-                break
-            x = best.solution.x
-            control = x[:-2].reshape(self.grid.spline.n_free, -1)
-            check = verify(self.library, self.grid, task, control, float(x[-2]), float(x[-1]))
-            late = attempt == self.options.refinements or time.perf_counter() > deadline
-            if check.passed or late:
-                break
-            bounds = check.tightened(bounds, MARGIN_FACTOR)
-            again = self._run(replace(task, bounds=bounds), best.start, x, best.solution)
-            if not again.converged:
-                again = self._run(replace(task, bounds=bounds), best.start, x)
-            if not again.converged:
-                optima = (best, again, *optima[1:])
-                break
-            optima = (again, *optima)
-        return optima, check
+        x0 = np.clip(start.variables(), programme.lower, programme.upper)
+        options = self.options.interior_point(start.barrier)
+        return SpatialOptimum(start.name, solve(programme, x0, options, warm))
 
     def _finish(
         self,

@@ -10,11 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lift_predictor.core.exceptions import TaskError, UnreachableError
-from lift_predictor.core.maximum_weight import Weighting
 from lift_predictor.core.planning.feet import Placement
 from lift_predictor.core.planning.plan_task import FARTHEST, NEAREST, PlanTask
 from lift_predictor.core.planning.solve import Listener, PlanProgress, finite_best
-from lift_predictor.core.planning.space.solve import SolvedInSpace, solve_in_space
+from lift_predictor.core.planning.space.solve import Probe, probe_in_space
 from lift_predictor.core.planning.space.task import Feet
 from lift_predictor.core.predictor import LiftPredictor
 
@@ -73,15 +72,12 @@ def allowed(feet: Feet, task: PlanTask) -> bool:
 
 
 def place_feet_in_space(
-    predictor: LiftPredictor,
-    task: PlanTask,
-    weighting: Weighting,
-    listener: Listener | None = None,
-) -> tuple[SolvedInSpace, tuple[Placement, ...]]:
+    predictor: LiftPredictor, task: PlanTask, listener: Listener | None = None
+) -> tuple[Probe, tuple[Placement, ...]]:
     """Search place and heading: candidates first, then steps from the best that become shorter.
 
-    Every candidate is solved from one made-up start; from then on the motion of the best place so
-    far is the start. It is a search for a good place near good candidates, not a proof.
+    Each is solved from the motion of the best place so far, and only if that fails from a made-up
+    start. It is a search for a good place near good candidates, not a proof.
 
     Raises
     ------
@@ -89,8 +85,8 @@ def place_feet_in_space(
         From no place can the box be held at both ends; carries the last reason.
     """
     tried: dict[Feet, Placement] = {}
-    best: SolvedInSpace | None = None
-    kept: SolvedInSpace | None = None
+    best: Probe | None = None
+    kept: Probe | None = None
     reason = ''
     first = candidates(task)
     total = len(first) + 6 * (HALVINGS + 1)
@@ -101,17 +97,11 @@ def place_feet_in_space(
         if feet in tried or not allowed(feet, task):
             return False
         try:
-            if best is None:
-                solved = solve_in_space(predictor, task, feet, weighting, n_starts=1)
-            else:
-                solved = solve_in_space(
-                    predictor, task, feet, weighting, (best.start(),),
-                    n_starts=1 if feet in first else 0,
-                )  # fmt: skip
-            value, message = solved.value, solved.prediction.report.message
+            probe = probe_in_space(predictor, task, feet, best)
+            value, message = probe.value, str(probe.run.solution.status)
             if np.isfinite(value) and (best is None or value < best.value):
-                best, better = solved, True
-            kept = best or _nearer_to_feasible(kept, solved)
+                best, better = probe, True
+            kept = best or _nearer_to_feasible(kept, probe)
         except (UnreachableError, TaskError) as error:
             value, message = float('inf'), str(error)
             reason = message
@@ -141,8 +131,8 @@ def _behind(place: Array, direction: Array, distance: float) -> Feet:
     return Feet(float(x), float(y), float(np.arctan2(direction[1], direction[0])))
 
 
-def _around(best: SolvedInSpace, step: float, turn: float) -> list[Feet]:
-    feet = best.plan.feet
+def _around(best: Probe, step: float, turn: float) -> list[Feet]:
+    feet = best.feet
     c, s = np.cos(feet.heading), np.sin(feet.heading)
     moves = [(step, 0.0, 0.0), (0.0, step, 0.0), (0.0, 0.0, turn)]
     return [
@@ -156,8 +146,7 @@ def _around(best: SolvedInSpace, step: float, turn: float) -> list[Feet]:
     ]
 
 
-def _nearer_to_feasible(kept: SolvedInSpace | None, other: SolvedInSpace) -> SolvedInSpace:
+def _nearer_to_feasible(kept: Probe | None, other: Probe) -> Probe:
     if kept is None:
         return other
-    both = (kept, other)
-    return min(both, key=lambda solved: solved.prediction.report.primal_residual)
+    return min((kept, other), key=lambda probe: probe.run.solution.primal)

@@ -27,6 +27,8 @@ from lift_predictor.core.planning.space.solve import (
 from lift_predictor.core.planning.space.task import Feet
 from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.spatial.prediction import PredictedLift3D
+from lift_predictor.core.spatial.refine import as_start
+from lift_predictor.core.spatial.starts import SpatialStart
 
 PROBES: Final = 1
 """Made-up initial guesses for each place on the way to the nearest lift that can be done."""
@@ -73,16 +75,14 @@ def _plan(
     placements: tuple[Placement, ...] = ()
     try:
         predictor.configure(subject)
+        first: tuple[SpatialStart, ...] = ()
         if task.feet is None:
-            found, placements = place_feet_in_space(predictor, task, weighting, listener)
-            feet = found.plan.feet
-            if found.prediction.report.ok:
-                again = solve_in_space(
-                    predictor, task, feet, weighting, (found.start(),), listener=listener
-                )
-                found = min(again, found, key=lambda solved: solved.value)
-        else:
-            found = solve_in_space(predictor, task, feet, weighting, listener=listener)
+            probe, placements = place_feet_in_space(predictor, task, listener)
+            feet = probe.feet
+            if probe.run.converged:
+                start = as_start(probe.run, predictor.spatial().grid)
+                first = (replace(start, name='neighbour'),)
+        found = solve_in_space(predictor, task, feet, weighting, first, listener=listener)
     except (TaskError, UnreachableError, HumanModelError) as error:
         nan = float('nan')
         refused = SpatialPlan(

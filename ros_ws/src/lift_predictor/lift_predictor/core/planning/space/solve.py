@@ -16,12 +16,17 @@ from lift_predictor.core.planning.plan_task import PlanTask
 from lift_predictor.core.planning.solve import Listener, PlanProgress
 from lift_predictor.core.planning.space.task import Feet, SpacePlan, place_plan
 from lift_predictor.core.predictor import LiftPredictor
-from lift_predictor.core.solvers.solution import Solution
 from lift_predictor.core.spatial.evaluation import lowering
 from lift_predictor.core.spatial.feasibility import binding_limits, lighter_lift
-from lift_predictor.core.spatial.maximum_weight import maximum_weight, total_effort
-from lift_predictor.core.spatial.prediction import PredictedLift3D
+from lift_predictor.core.spatial.maximum_weight import (
+    for_weight_alone,
+    maximum_weight,
+    total_effort,
+)
+from lift_predictor.core.spatial.person import SpatialPerson
+from lift_predictor.core.spatial.prediction import PredictedLift3D, SpatialOptimum
 from lift_predictor.core.spatial.predictor import SpatialPredictor
+from lift_predictor.core.spatial.refine import as_start
 from lift_predictor.core.spatial.starts import SpatialStart
 
 
@@ -52,12 +57,6 @@ class SolvedInSpace:
     binding: tuple[str, ...]
     value: float
 
-    def start(self) -> SpatialStart:
-        """Use the motion as an initial guess."""
-        found = self.prediction
-        return SpatialStart('neighbour', found.control, found.box_mass, found.duration)
-
-
 def solve_in_space(
     predictor: LiftPredictor,
     task: PlanTask,
@@ -65,7 +64,6 @@ def solve_in_space(
     weighting: Weighting,
     first: Sequence[SpatialStart] = (),
     n_starts: int | None = None,
-    warm: Solution | None = None,
     listener: Listener | None = None,
 ) -> SolvedInSpace:
     """Plan with the feet at a place.
@@ -84,8 +82,6 @@ def solve_in_space(
         Initial guesses tried before the made-up ones.
     n_starts : int, optional
         Made-up initial guesses at most; all if omitted.
-    warm : Solution, optional
-        Of a neighbour, where the mass is given.
     listener : callable, optional
         Told after each run.
 
@@ -103,24 +99,86 @@ def solve_in_space(
         if listener is not None:
             listener(PlanProgress('lift', done, total, best))
 
+    spatial, person = _configured(predictor)
+    plan = place_plan(spatial, person, task, feet)
+    starts = (*first, *plan.starts(spatial)[:n_starts])
+    if task.box_mass is None:
+        prediction = maximum_weight(spatial, plan.task, starts, weighting, tell).prediction
+    else:
+        prediction = spatial.solve_task(plan.task, starts, tell)
+    return _solved(spatial, plan, prediction)
+
+
+@dataclass(frozen=True, eq=False)
+class Probe:
+    """A plan solved once at the nodes, to compare places of the feet.
+
+    Attributes
+    ----------
+    feet : Feet
+        Where they stand.
+    run : SpatialOptimum
+        What the solver found.
+    value : float
+        Effort [s], or minus the mass [kg] where the largest was asked for (without weighting);
+        infinite: no lift.
+    """
+
+    feet: Feet
+    run: SpatialOptimum
+    value: float
+
+
+def probe_in_space(
+    predictor: LiftPredictor, task: PlanTask, feet: Feet, neighbour: Probe | None = None
+) -> Probe:
+    """Solve a plan once, fast.
+
+    Parameters
+    ----------
+    predictor, task, feet
+        As in `solve_in_space`.
+    neighbour : Probe, optional
+        From feet near by: its motion is the start, and only if that fails the first of the made-up
+        ones.
+
+    Raises
+    ------
+    TaskError, UnreachableError
+        As in `solve_in_space`.
+    """
+    spatial, person = _configured(predictor)
+    plan = place_plan(spatial, person, task, feet)
+    if task.box_mass is None:
+        plan = replace(plan, task=for_weight_alone(plan.task))
+    run: SpatialOptimum | None = None
+    if neighbour is not None:
+        start = as_start(neighbour.run, spatial.grid)
+        run = spatial.run(plan.task, start, neighbour.run.solution)
+    if run is None or not run.converged:
+        run = spatial.run(plan.task, plan.starts(spatial)[0])
+    if not run.converged:
+        return Probe(feet, run, float('inf'))
+    mass = float(run.solution.x[-2])
+    return Probe(feet, run, -mass if task.box_mass is None else run.solution.objective)
+
+
+def _configured(predictor: LiftPredictor) -> tuple[SpatialPredictor, SpatialPerson]:
     spatial = predictor.spatial()
     if spatial.person is None:
         raise PlanError('subject: none was configured before the first plan')
-    plan = place_plan(spatial, spatial.person, task, feet)
-    starts = list(first)
-    if n_starts != 0:
-        starts += plan.starts(spatial)[:n_starts]
-    if task.box_mass is None:
-        heaviest = maximum_weight(spatial, plan.task, starts, weighting, tell)
-        prediction, effort, value = heaviest.prediction, heaviest.effort, -heaviest.mass
-    else:
-        prediction = spatial.solve_task(plan.task, starts, tell, warm=warm)
-        effort = value = float('nan')
-        if prediction.report.ok:
-            effort = value = total_effort(spatial, plan.task, prediction)
+    return spatial, spatial.person
+
+
+def _solved(
+    spatial: SpatialPredictor, plan: SpacePlan, prediction: PredictedLift3D
+) -> SolvedInSpace:
     if not prediction.report.ok:
         nan = float('nan')
         return SolvedInSpace(plan, prediction, nan, nan, (), float('inf'))
+    effort = total_effort(spatial, plan.task, prediction)
+    mass_is_given = np.ptp(plan.task.bounds.box_mass) == 0.0
+    value = effort if mass_is_given else -prediction.box_mass
     limits = binding_limits(plan.task, spatial.grid, prediction.optima[0].solution)
     return SolvedInSpace(
         plan,
@@ -144,10 +202,8 @@ def lighter_in_space(
     predictor: LiftPredictor, task: PlanTask, feet: Feet
 ) -> NearestLift[PredictedLift3D] | None:
     """Find the plan's lift with the largest mass up to the one asked for; None: none."""
-    spatial = predictor.spatial()
-    if spatial.person is None:
-        raise PlanError('subject: none was configured before the first plan')
-    plan = place_plan(spatial, spatial.person, task, feet)
+    spatial, person = _configured(predictor)
+    plan = place_plan(spatial, person, task, feet)
     # What is too heavy to be held gives no start; empty hands do.
     empty = np.zeros(2)
     bounds = replace(plan.task.bounds, box_mass=empty)
