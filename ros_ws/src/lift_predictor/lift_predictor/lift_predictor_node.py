@@ -11,7 +11,7 @@ from typing import Final
 from lifting_interfaces.action import PredictLift
 from lifting_interfaces.msg import LiftComparison, MeasuredLift, PredictedLift, Task
 from lifting_interfaces.msg import Subject as SubjectMsg
-from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.action import ActionServer, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 from trajectory_msgs.msg import JointTrajectory
@@ -67,7 +67,7 @@ class LiftPredictorNode(PipelineNode):
             '~/predict_lift',
             self._on_goal,
             goal_callback=self._accept,
-            cancel_callback=lambda handle: CancelResponse.ACCEPT,
+            cancel_callback=self._background.cancel,
         )
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -97,10 +97,9 @@ class LiftPredictorNode(PipelineNode):
             feedback = PredictLift.Feedback(starts_tried=tried, starts_total=total)
             feedback.best_objective = best
             handle.publish_feedback(feedback)
-            self._background.check(handle)
+            self._background.check()
 
         def work() -> PredictedLift2D:
-            self._background.check(handle)
             predictor = self._background.predictor
             predictor.configure(subject)
             return predictor.predict_and_compare(lift, box, tell)[0]
@@ -114,7 +113,7 @@ class LiftPredictorNode(PipelineNode):
             result.error_message = str(error)
             return result
         try:
-            prediction = await self._background.run(work)
+            prediction = await self._background.run(handle, work)
         except CancelledError as error:
             (handle.canceled if handle.is_cancel_requested else handle.abort)()
             result.error_code = PredictLift.Result.CANCELLED

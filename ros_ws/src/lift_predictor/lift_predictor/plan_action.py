@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable
 
 from lifting_interfaces.action import PlanLift
-from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.action import ActionServer, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.node import Node
 
@@ -73,7 +73,7 @@ class PlanAction:
             '~/plan_lift',
             self._on_goal,
             goal_callback=self._accept,
-            cancel_callback=lambda handle: CancelResponse.ACCEPT,
+            cancel_callback=background.cancel,
         )
 
     def destroy(self) -> None:
@@ -94,7 +94,9 @@ class PlanAction:
             result.error_message = str(error)
             return result
         try:
-            planned = await self._background.run(lambda: self._plan(handle, subject, task))
+            planned = await self._background.run(
+                handle, lambda: self._plan(handle, subject, task)
+            )
         except CancelledError as error:
             result.error_code = PlanLift.Result.CANCELLED
             result.error_message = str(error)
@@ -124,7 +126,6 @@ class PlanAction:
                     best_objective=progress.best,
                 )
             )
-            self._background.check(handle)
+            self._background.check()
 
-        self._background.check(handle)
         return LiftPlanner(self._background.predictor).plan(subject, task, listen)

@@ -39,6 +39,7 @@ from lift_predictor.core.sagittal.starts import make_starts
 from lift_predictor.core.sagittal.task import Box, LiftTask2D, build_task
 from lift_predictor.core.sagittal.verify import Verification
 from lift_predictor.core.solvers.optimum import Optimum, Progress, Start
+from lift_predictor.core.solvers.stop import StopFlag
 
 if TYPE_CHECKING:
     # They import CasADi, which a lift in the plane does without.
@@ -56,6 +57,8 @@ class LiftPredictor:
     ----------
     options : PredictorOptions
         Settings.
+    stop : StopFlag, optional
+        Another thread sets it to end the work between two iterations (`CancelledError`).
 
     Notes
     -----
@@ -63,12 +66,15 @@ class LiftPredictor:
     has the optimiser ready.
     """
 
-    def __init__(self, options: PredictorOptions | None = None) -> None:
+    def __init__(
+        self, options: PredictorOptions | None = None, stop: StopFlag | None = None
+    ) -> None:
         self.options = options or PredictorOptions()
+        self.stop = stop or StopFlag()
         self.person: Person | None = None
         self._subject: Subject | None = None
         self._spatial: SpatialPredictor | None = None
-        self.programme = LiftOptimiser(self.options.grid, self.options.time_limit)
+        self.programme = LiftOptimiser(self.options.grid, self.options.time_limit, self.stop)
         self._refiner = Refiner(self.programme, self.options.refinements)
 
     def configure(self, subject: Subject, segments: SegmentParameters | None = None) -> None:
@@ -194,6 +200,11 @@ class LiftPredictor:
             Initial guesses, the most promising first.
         progress : callable, optional
             Told after each start; what it raises ends the work between two starts.
+
+        Raises
+        ------
+        CancelledError
+            `stop` was set.
         """
         return self.solve_and_compare(task, starts, progress)[0]
 
@@ -209,9 +220,11 @@ class LiftPredictor:
         begin: float,
         starts: Sequence[Start],
         progress: Progress | None,
+        deadline: float | None = None,
     ) -> tuple[PredictedLift2D, LiftComparison | None]:
         build_time = time.perf_counter() - begin
-        deadline = begin + self.options.time_limit
+        if deadline is None:
+            deadline = begin + self.options.time_limit
         vector = task.parameters.pack()
         given = starts
         if task.measured is None:
@@ -252,13 +265,17 @@ class LiftPredictor:
         tuple[Optimum, ...], Verification | None, NearestLift[PredictedLift2D] | None
     ]:
         """Seek a lift that no start led to over lifts of less mass; or the nearest such lift."""
-        found = largest_mass(self.solve_task, task, starts)
+        def solve_lighter(other: LiftTask2D, starts: Sequence[Start]) -> PredictedLift2D:
+            return self._solve(other, time.perf_counter(), starts, None, deadline)[0]
+
+        found = largest_mass(solve_lighter, task, starts)
         if found is None or not found.report.ok:
             return (), None, None
         nearest = as_nearest(found, task)
         if nearest is not None:
             return (), None, nearest
-        again = self.programme.solve(vector, task.bounds, found.optima[0].as_start())
+        start = found.optima[0].as_start()
+        again = self.programme.solve(vector, task.bounds, start, deadline=deadline)
         runs, check = self._refiner.refine(task, vector, (again,), deadline)
         return runs, check, None
 

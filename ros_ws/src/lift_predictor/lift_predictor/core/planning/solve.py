@@ -113,6 +113,8 @@ def solve_plan(
         No subject was configured, or the task is not sagittal.
     UnreachableError
         A place of the box is out of reach.
+    CancelledError
+        The predictor's stop flag was set.
     """
     if predictor.person is None:
         raise TaskError('subject: none was configured before the first plan')
@@ -124,6 +126,7 @@ def solve_plan(
     style = technique(task.technique)
     tolerance = POSTURE_TOLERANCE
     for _ in range(WINDOW_HALVINGS + 1):
+        predictor.stop.check()
         plan = build_plan(predictor.person, task, ankle, tolerance)
         made = plan.starts(predictor.programme.grid.spline, n_starts)
         starts = (*first, *made)

@@ -35,6 +35,7 @@ from lift_predictor.core.solvers.optimum import (
 from lift_predictor.core.solvers.solution import InteriorPointOptions, Solution, Status
 from lift_predictor.core.solvers.solve import solve
 from lift_predictor.core.solvers.spline_programme import SplineProgramme
+from lift_predictor.core.solvers.stop import StopFlag
 
 Array = NDArray[np.float64]
 
@@ -56,6 +57,8 @@ class LiftOptimiser:
         Control points and nodes.
     time_limit : float
         Wall time of one run at most [s], as a last resort: runs are limited by iterations.
+    stop : StopFlag, optional
+        Ends the work between two iterations.
 
     Attributes
     ----------
@@ -67,8 +70,11 @@ class LiftOptimiser:
         Forces of a motion.
     """
 
-    def __init__(self, grid: Grid, time_limit: float = 10.0) -> None:
+    def __init__(
+        self, grid: Grid, time_limit: float = 10.0, stop: StopFlag | None = None
+    ) -> None:
         self.grid, self.time_limit = grid, time_limit
+        self.stop = stop or StopFlag()
         library = sagittal_library()
         self.how, self.build_time = library.how, library.build_time
         self.report = ReportFunction(library)
@@ -79,7 +85,12 @@ class LiftOptimiser:
         return sagittal_programme(self._assembler, self.grid, parameters, bounds)
 
     def solve(
-        self, parameters: Array, bounds: LiftBounds, start: Start, warm: Solution | None = None
+        self,
+        parameters: Array,
+        bounds: LiftBounds,
+        start: Start,
+        warm: Solution | None = None,
+        deadline: float = float('inf'),
     ) -> Optimum:
         """Run the interior-point method from one start.
 
@@ -93,21 +104,34 @@ class LiftOptimiser:
             Initial guess.
         warm : Solution, optional
             Of a similar task: replaces the start.
+        deadline : float
+            The run ends then at the latest, on the clock of `time.perf_counter` [s].
+
+        Raises
+        ------
+        CancelledError
+            The stop flag was set.
         """
         begin = time.perf_counter()
         programme = self.programme(parameters, bounds)
         options = NEAR_OPTIONS if start.near else LIFT_OPTIONS
-        options = replace(options, time_limit=self.time_limit)
+        options = replace(options, time_limit=self._left(deadline), stop=self.stop)
         x0 = np.append(start.control, start.box_mass) if warm is None else warm.x
         solution = solve(programme, x0, options, warm)
         if start.near and warm is None and not solution.ok:
             # Not near enough: what is in the way needs a large barrier.
-            options = replace(LIFT_OPTIONS, time_limit=self.time_limit)
+            options = replace(
+                LIFT_OPTIONS, time_limit=self._left(deadline), stop=self.stop
+            )
             before, solution = solution, solve(programme, x0, options)
             iterations = before.iterations + solution.iterations
             solution = replace(solution, iterations=iterations)
         optimum = as_optimum(self.grid, programme, solution, start.name)
         return replace(optimum, solve_time=time.perf_counter() - begin)
+
+    def _left(self, deadline: float) -> float:
+        """Wall time for a run that begins now [s]."""
+        return min(self.time_limit, max(deadline - time.perf_counter(), 0.0))
 
     def solve_all(
         self,
@@ -121,13 +145,13 @@ class LiftOptimiser:
 
         Converged runs come before the others, then the lower objective, or the smaller violation
         where none converged. The deadline (on the clock of `time.perf_counter`) is a last resort:
-        after it no further start is begun.
+        the run ends then, and no further start is begun.
         """
         runs: list[Optimum] = []
         for start in starts:
             if runs and time.perf_counter() > deadline:
                 break
-            runs.append(self.solve(parameters, bounds, start))
+            runs.append(self.solve(parameters, bounds, start, deadline=deadline))
             if progress is not None:
                 progress(len(runs), len(starts), best_objective(runs))
         if runs and all(run.outcome in NO_ANSWER for run in runs):
@@ -141,8 +165,10 @@ class LiftOptimiser:
         from lift_predictor.core.solvers.compiled import build_programme
         from lift_predictor.core.solvers.ipopt import LiftSolver
 
-        referee = LiftSolver(build_programme(self.grid), self.time_limit)
-        runs = referee.solve_all(parameters, bounds, starts, deadline)
+        referee = LiftSolver(build_programme(self.grid), self._left(deadline))
+        runs = referee.solve_all(
+            parameters, bounds, starts, deadline, lambda *_: self.stop.check()
+        )
         return [replace(run, start=f'{run.start}, {IPOPT_NOTE}') for run in runs]
 
 

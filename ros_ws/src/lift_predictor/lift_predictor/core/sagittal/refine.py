@@ -86,7 +86,9 @@ class Refiner:
                 if time.perf_counter() > deadline:
                     return (runs[0], *tried, *runs[1:]), check
                 finer = self._optimiser(factor)
-                again = finer.solve(vector, task.bounds, candidate.as_start())
+                again = finer.solve(
+                    vector, task.bounds, candidate.as_start(), deadline=deadline
+                )
                 again = replace(again, start=f'{again.start}, {finer.grid.n_nodes} nodes')
                 if not again.converged:
                     tried.append(again)
@@ -113,7 +115,7 @@ class Refiner:
             margin = 0.0 if bounds.margin is None else bounds.margin
             factor = MARGIN_FACTOR * 2.0**attempt
             bounds = replace(bounds, margin=margin + factor * check.excess)
-            again = self.optimiser.solve(vector, bounds, best.as_start())
+            again = self.optimiser.solve(vector, bounds, best.as_start(), deadline=deadline)
             if not again.converged:
                 optima = (best, again, *optima[1:])
                 break
@@ -129,7 +131,9 @@ class Refiner:
         if factor not in self._finer:
             grid = self.optimiser.grid
             finer = replace(grid, n_nodes=factor * (grid.n_nodes - 1) + 1)
-            self._finer[factor] = LiftOptimiser(finer, self.optimiser.time_limit)
+            self._finer[factor] = LiftOptimiser(
+                finer, self.optimiser.time_limit, self.optimiser.stop
+            )
         return self._finer[factor]
 
 

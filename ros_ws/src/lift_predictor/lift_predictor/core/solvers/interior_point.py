@@ -80,6 +80,11 @@ def solve(
     -------
     Solution
         Its status says whether it is one.
+
+    Raises
+    ------
+    CancelledError
+        The stop flag of the options was set before the end.
     """
     return _Solver(programme, x0, options or InteriorPointOptions(), warm).run()
 
@@ -179,6 +184,11 @@ class _Solver:
             primal, MULTIPLIER_SCALE * dual / s_d, MULTIPLIER_SCALE * complementarity / s_c
         )
 
+    def _late(self) -> bool:
+        if self.options.stop is not None:
+            self.options.stop.check()
+        return time.perf_counter() - self.begin > self.options.time_limit
+
     def run(self) -> Solution:
         """Iterate until solved or a limit is met."""
         options = self.options
@@ -190,7 +200,7 @@ class _Solver:
             self._reduce_barrier()
             if self.iterations >= options.max_iterations:
                 return self._end(Status.ITERATION_LIMIT)
-            if time.perf_counter() - self.begin > options.time_limit:
+            if self._late():
                 return self._end(Status.TIME_LIMIT)
             self.iterations += 1
             try:
@@ -337,7 +347,7 @@ class _Solver:
         self.filter.add(theta, phi)
         x = self.state.v[: p.n]
         left = options.max_iterations - self.iterations
-        restored = restore(p, x, 0.1 * options.infeasible_violation, left)
+        restored = restore(p, x, 0.1 * options.infeasible_violation, left, self._late)
         self.iterations += restored.iterations
         x = self._inside(restored.x, slice(0, p.n), 1e-8)
         self.point = p.linearise(x)

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,7 +35,13 @@ class Restored:
     minimum: bool
 
 
-def restore(programme: ScaledProgramme, x: Array, goal: float, max_iterations: int) -> Restored:
+def restore(
+    programme: ScaledProgramme,
+    x: Array,
+    goal: float,
+    max_iterations: int,
+    late: Callable[[], bool] = lambda: False,
+) -> Restored:
     """Reduce half the squared violation of the rows by a damped, projected Newton method.
 
     Parameters
@@ -47,13 +54,15 @@ def restore(programme: ScaledProgramme, x: Array, goal: float, max_iterations: i
         Largest violation at which to stop early.
     max_iterations : int
         Iterations at most.
+    late : callable, optional
+        Asked before each iteration whether to end there.
     """
     low, high = programme.lower[: programme.n], programme.upper[: programme.n]
     damping, stalled = FIRST_DAMPING, 0
     violation = row_violation(programme, programme.values(x)[1])
     value = 0.5 * float(violation @ violation)
     for iteration in range(max_iterations):
-        if float(np.abs(violation).max(initial=0.0)) <= goal:
+        if float(np.abs(violation).max(initial=0.0)) <= goal or late():
             return Restored(x, iteration, False)
         point = programme.linearise(x)
         gradient = point.transposed(violation)

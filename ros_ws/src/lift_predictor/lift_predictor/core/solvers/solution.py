@@ -10,6 +10,8 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from lift_predictor.core.solvers.stop import StopFlag
+
 Array = NDArray[np.float64]
 
 
@@ -22,6 +24,7 @@ class Status(StrEnum):
     TIME_LIMIT = 'time limit'
     STUCK = 'no further progress'
     NOT_FINITE = 'functions not finite at the start'
+    CANCELLED = 'cancelled'
 
 
 @dataclass(frozen=True)
@@ -47,6 +50,8 @@ class InteriorPointOptions:
         The same for warm starts.
     gradient_limit : float
         Objective and rows are scaled down where their gradients at the start are larger.
+    stop : StopFlag, optional
+        Ends the work before the next iteration.
     """
 
     tolerance: float = 1e-8
@@ -58,6 +63,7 @@ class InteriorPointOptions:
     warm_barrier: float = 1e-4
     warm_bound_push: float = 1e-5
     gradient_limit: float = 100.0
+    stop: StopFlag | None = None
 
 
 @dataclass(frozen=True, eq=False)

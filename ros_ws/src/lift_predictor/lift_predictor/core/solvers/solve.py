@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 
 STATUS: Final = (
     Status.OPTIMAL, Status.INFEASIBLE, Status.ITERATION_LIMIT, Status.TIME_LIMIT, Status.STUCK,
-    Status.NOT_FINITE,
+    Status.NOT_FINITE, Status.CANCELLED,
 )  # fmt: skip
 """In the order of the numbers in interior_point.c."""
 
@@ -33,6 +33,7 @@ class _Settings(ctypes.Structure):
         )),
         ('max_iterations', ctypes.c_int),
         ('warm', ctypes.c_int),
+        ('stop', ctypes.c_void_p),
     )  # fmt: skip
 
 
@@ -55,8 +56,15 @@ def solve(
     """Find a local minimum; parameters and result as of `interior_point.solve`.
 
     Both ways do the same steps. Differences are those of rounding.
+
+    Raises
+    ------
+    CancelledError
+        The stop flag of the options was set before the end.
     """
     options = options or InteriorPointOptions()
+    if options.stop is not None:
+        options.stop.check()
     if isinstance(programme, SplineProgramme) and isinstance(
         programme.assembler, CompiledAssembler
     ):
@@ -89,6 +97,7 @@ def _solve_compiled(
         options.gradient_limit,
         options.max_iterations,
         int(warm is not None),
+        None if options.stop is None else options.stop.address,
     )
     outcome = _Outcome()
     bounds = (programme.lower, programme.upper, programme.row_lower, programme.row_upper)
@@ -101,6 +110,8 @@ def _solve_compiled(
     )
     if failed:
         raise MemoryError('no memory for the interior-point method')
+    if options.stop is not None:
+        options.stop.check()
     status = STATUS[outcome.status]
     violated: tuple[tuple[str, float], ...] = ()
     if status is not Status.OPTIMAL:

@@ -24,7 +24,7 @@ static int restore(struct solver *s, double goal, int limit) {
     double value = violation_of(s, s->rows, violation);
     while (limit-- > 0) {
         double most = largest(violation, s->m);
-        if (most <= goal) return 0;
+        if (most <= goal || late(s) || cancelled(s)) return 0;
         linearise(s, x);
         jacobian_transposed(s, violation, gradient);
         double steep = 0.0, sum = 0.0;
@@ -101,7 +101,8 @@ static int iterate(struct solver *s) {
             s->n_filter = 0;
         }
         if (s->iterations >= s->set.max_iterations) return ITERATION_LIMIT;
-        if (now() - s->start_time > s->set.time_limit) return TIME_LIMIT;
+        if (late(s)) return TIME_LIMIT;
+        if (cancelled(s)) return CANCELLED;
         s->iterations++;
         if (!factorise(s)) return STUCK;
         newton_step(s, s->residual);

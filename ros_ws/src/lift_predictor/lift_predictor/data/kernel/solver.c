@@ -7,12 +7,13 @@
 #include <float.h>
 #include <time.h>
 
-enum { OPTIMAL, INFEASIBLE, ITERATION_LIMIT, TIME_LIMIT, STUCK, NOT_FINITE };
+enum { OPTIMAL, INFEASIBLE, ITERATION_LIMIT, TIME_LIMIT, STUCK, NOT_FINITE, CANCELLED };
 enum { FILTER_ROOM = 512, SOC_LIMIT = 4, MAX_RESTORATIONS = 8 };
 
 struct settings {
     double tolerance, infeasible_violation, time_limit, barrier, bound_push, gradient_limit;
     int max_iterations, warm;
+    const volatile int *stop;  // set by another thread that wants the work to end; or NULL
 };
 
 struct outcome {
@@ -49,6 +50,10 @@ static double now(void) {
     clock_gettime(CLOCK_MONOTONIC, &t);
     return t.tv_sec + 1e-9 * t.tv_nsec;
 }
+
+static int cancelled(const struct solver *s) { return s->set.stop && *s->set.stop; }
+
+static int late(const struct solver *s) { return now() - s->start_time > s->set.time_limit; }
 
 // ---- dense algebra (row-major) -------------------------------------------------------------
 
