@@ -140,6 +140,7 @@ class LiftPredictor:
             from lift_predictor.core.spatial.predictor import SpatialPredictor
 
             self._spatial = SpatialPredictor(self.options.spatial)
+            self._spatial.stop = self.stop
         if self._spatial.subject is not self._subject:
             self._spatial.configure(self._subject)
         return self._spatial

@@ -24,6 +24,7 @@ from lift_predictor.core.solvers.library import NodeLibrary
 from lift_predictor.core.solvers.solution import InteriorPointOptions, Solution, Status
 from lift_predictor.core.solvers.solve import solve
 from lift_predictor.core.solvers.spline_programme import Assembler
+from lift_predictor.core.solvers.stop import StopFlag
 from lift_predictor.core.spatial.comparison import SpatialComparison, compare
 from lift_predictor.core.spatial.evaluation import evaluate, sample
 from lift_predictor.core.spatial.feasibility import lighter_lift
@@ -123,6 +124,7 @@ class SpatialPredictor:
     Notes
     -----
     Building loads the compiled functions, or compiles them (half a minute, once per machine).
+    Another thread may set `stop` to end the work between two iterations (`CancelledError`).
     """
 
     def __init__(self, options: SpatialOptions | None = None) -> None:
@@ -133,6 +135,7 @@ class SpatialPredictor:
         self.library: NodeLibrary = spatial_library()
         self.assembler = spatial_assembler(self.library, self.grid)
         self._with_technique: Assembler | None = None
+        self.stop = StopFlag()
 
     def configure(self, subject: Subject, segments: SegmentParameters | None = None) -> None:
         """Set the subject, and the segments of the skeleton if they are not to be estimated.
@@ -277,7 +280,7 @@ class SpatialPredictor:
             assembler = self._with_technique
         programme = spatial_programme(assembler, self.grid, task.parameters, task.bounds)
         x0 = np.clip(start.variables(), programme.lower, programme.upper)
-        options = self.options.interior_point(start.barrier)
+        options = replace(self.options.interior_point(start.barrier), stop=self.stop)
         return SpatialOptimum(start.name, solve(programme, x0, options, warm))
 
     def _finish(
