@@ -31,8 +31,8 @@ subjects:
 tasks:
   - {name: given, box_mass: 5.0, box_size: [0.24, 0.3, 0.13], start: [0.37, 0, 0.07],
      end: [0.5, 0, 0.95], feet: [0, 0]}
-  - {name: aside, box_mass: 5.0, box_size: [0.24, 0.3, 0.13], start: [0.37, 0, 0.07],
-     end: [0.5, 0.5, 0.95], feet: [0, 0], technique: squat}
+  - {name: behind, box_mass: 5.0, box_size: [0.24, 0.3, 0.13], start: [0.37, 0, 0.07],
+     end: [-0.5, 0.05, 0.95], feet: [0, 0]}
 """
 
 
@@ -66,10 +66,10 @@ def check_complete(found: list[dict], count: int) -> None:
     """Every case has one row: a lift for the one task, the reason for the other."""
     assert len({row['case_id'] for row in found}) == len(found) == 2 * count
     given = [row for row in found if row['task'] == 'given']
-    aside = [row for row in found if row['task'] == 'aside']
+    behind = [row for row in found if row['task'] == 'behind']
     assert all(row['status'] == 0 and row['effort'] > 0.0 for row in given), given
-    assert all(row['status_name'] == 'PREDICTOR_BAD_INPUT' for row in aside), aside
-    assert all('sagittal' in row['message'] and row['effort'] is None for row in aside)
+    assert all(row['status_name'] == 'PREDICTOR_BAD_INPUT' for row in behind), behind
+    assert all('turns' in row['message'] and row['effort'] is None for row in behind)
 
 
 def test_killed_study_goes_on_and_solves_nothing_twice(tmp_path: Path) -> None:
