@@ -22,6 +22,7 @@ from lifting_bringup import (
 )
 from lifting_bringup.bags.exceptions import BagError
 from lifting_bringup.graph_errors import GraphError
+from lifting_bringup.interruption import stopped_by_signals
 from lifting_bringup.node_process import discovery, node_processes
 
 #: The recording that `lift demo` plays.
@@ -145,7 +146,10 @@ def _run(options: argparse.Namespace) -> int:
         run = 'offline'
     else:
         visualize = options.visualize or options.record_visualization
-        with node_processes(output / 'logs', options.station, visualize) as processes:
+        with (
+            stopped_by_signals(),
+            node_processes(output / 'logs', options.station, visualize) as processes,
+        ):
             # Loads while the nodes do.
             from lifting_bringup.session import RunOptions, run_online
 

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import signal
 import subprocess
@@ -14,6 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from lifting_bringup.graph_errors import NodeDiedError
+from lifting_bringup.interruption import Deafness
 
 #: Order of start: what computes longest before it is ready comes first.
 NODES = ('muscle_analyzer', 'lift_predictor', 'motion_tracker', 'injury_monitor')
@@ -30,6 +32,10 @@ DISCOVERY_PROFILE = Path(__file__).with_name('data') / 'fast_dds.xml'
 
 #: Variables that name a profile of the user's own, which goes before ours.
 PROFILE_VARIABLES = ('FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE')
+
+_LIBC = ctypes.CDLL(None)
+#: From <linux/prctl.h>: the signal a process gets when its parent dies.
+_PR_SET_PDEATHSIG = 1
 
 #: Time [s] a process has to end after SIGTERM before it is killed.
 STOP_TIMEOUT = 15.0
@@ -103,6 +109,11 @@ def environment() -> dict[str, str]:
     return values
 
 
+def _end_with_parent() -> None:
+    # A command that is killed cannot stop its nodes any more: the kernel does (Linux).
+    _LIBC.prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
+
+
 def start_module(
     name: str,
     module: str,
@@ -110,6 +121,7 @@ def start_module(
     station: str = '',
     arguments: tuple[str, ...] = (),
     parameters: dict[str, object] | None = None,
+    terminal: bool = False,
 ) -> NodeProcess:
     """Start a Python module as a process, in the namespace of a station if one is named.
 
@@ -127,6 +139,9 @@ def start_module(
         Command line before `--ros-args`.
     parameters : dict, optional
         Parameter overrides.
+    terminal : bool
+        Whether the process belongs to the terminal: reads its keys, gets its Ctrl-C. Another one
+        is stopped by its `NodeProcess` alone, in the order of the one who started it.
 
     Returns
     -------
@@ -142,7 +157,13 @@ def start_module(
         command += ['-p', f'{key}:={text}']
     with log.open('wb') as output:
         process = subprocess.Popen(
-            command, stdout=output, stderr=subprocess.STDOUT, env=environment()
+            command,
+            stdin=None if terminal else subprocess.DEVNULL,
+            stdout=output,
+            stderr=subprocess.STDOUT,
+            env=environment(),
+            process_group=None if terminal else 0,
+            preexec_fn=_end_with_parent,  # noqa: PLW1509  (one system call, no locks)
         )
     return NodeProcess(name, process, log)
 
@@ -169,6 +190,7 @@ def node_processes(
     list of NodeProcess
     """
     processes: list[NodeProcess] = []
+    deafness = Deafness()
     try:
         for name in (*NODES, VISUALIZATION) if visualize else NODES:
             module = f'{name}.{name}_node'
@@ -176,7 +198,9 @@ def node_processes(
             processes.append(start_module(name, module, log_folder, station, parameters=values))
         yield processes
     finally:
+        deafness.begin()
         for process in processes:
             process.terminate()
         for process in processes:
             process.stop()
+        deafness.end()

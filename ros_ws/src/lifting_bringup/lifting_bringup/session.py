@@ -19,12 +19,14 @@ import rclpy
 from rclpy.executors import Executor
 from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
 from std_srvs.srv import SetBool, Trigger
 
 from injury_monitor.core.limits import limits_for
 from lifting_bringup.bags.reader import BagReader
 from lifting_bringup.graph import Graph
 from lifting_bringup.graph_errors import SessionError
+from lifting_bringup.interruption import Deafness
 from lifting_bringup.live_state import FOLLOWED, LiveState
 from lifting_bringup.live_view import LiveView
 from lifting_bringup.node_process import NodeProcess, discovery, node_processes, start_module
@@ -179,7 +181,9 @@ def run_online(
         If the recording cannot be read.
     """
     logs = options.output / 'logs'
+    deafness = Deafness()
     with ExitStack() as stack:
+        stack.callback(deafness.end)
         if processes is None:
             processes = stack.enter_context(
                 node_processes(logs, options.station, options.visualize)
@@ -191,7 +195,8 @@ def run_online(
         recorder, player = helpers
         os.environ.update(discovery())
         stack.callback(faulthandler.cancel_dump_traceback_later)
-        rclpy.init()
+        # A signal is Python's: the context must live until all that is in it has been destroyed.
+        rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
         stack.callback(rclpy.try_shutdown)
         node = Node('lift_run', namespace=options.station)
         stack.callback(node.destroy_node)
@@ -203,6 +208,7 @@ def run_online(
             faulthandler.dump_traceback_later, CLOSING, exit=True, file=sys.__stderr__
         )
         stack.callback(_stop, [*helpers, *processes])
+        stack.callback(deafness.begin)
         executor.add_node(node)
         graph = Graph(node, executor, options.station, processes, say)
         say(f'starting the graph: {", ".join(process.name for process in processes)}')
@@ -217,6 +223,8 @@ def run_online(
 
 
 def _stop(processes: list[NodeProcess]) -> None:
+    for process in processes:
+        process.terminate()
     for process in processes:
         process.stop()
 
@@ -242,6 +250,7 @@ def _start_helpers(
             'play', str(options.bag), '--rate', str(options.rate), '--station', options.station,
             '--start-paused', '--wait-timeout', '600', '--wait-for', *summary.inputs,
         ),
+        terminal=True,
     )
     return [recorder, player]
 

@@ -2,7 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Environment and end of the node processes; no ROS."""
 
+import subprocess
+import sys
+import time
 import xml.etree.ElementTree as ET
+from pathlib import Path
 
 import pytest
 
@@ -46,6 +50,35 @@ def test_profile_announces_for_as_long_as_a_start_may_take():
     count = int(quick.findtext('dds:count', namespaces=space))
     period = 1e-9 * int(quick.findtext('dds:period/dds:nanosec', namespaces=space))
     assert count * period == pytest.approx(10.0)
+
+
+def test_processes_end_with_a_parent_that_is_killed(tmp_path):
+    script = (
+        'import sys, time\n'
+        'from pathlib import Path\n'
+        'from lifting_bringup.node_process import start_module\n'
+        'helper = start_module("helper", "http.server", Path(sys.argv[1]), arguments=("0",))\n'
+        'print(helper.process.pid, flush=True)\n'
+        'time.sleep(60)\n'
+    )
+    command = [sys.executable, '-c', script, str(tmp_path)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as parent:
+        helper = int(parent.stdout.readline())
+        assert alive(helper)
+        parent.kill()
+    deadline = time.monotonic() + 30.0
+    while alive(helper):
+        assert time.monotonic() < deadline, 'the helper goes on without its parent'
+        time.sleep(0.02)
+
+
+def alive(process):
+    """Return whether a process runs; one that has ended but was not asked for does not."""
+    try:
+        state = Path(f'/proc/{process}/stat').read_text().rpartition(')')[2].split()[0]
+    except FileNotFoundError:
+        return False
+    return state not in 'ZX'
 
 
 def test_end_of_a_process_is_told_with_its_last_words(tmp_path):
