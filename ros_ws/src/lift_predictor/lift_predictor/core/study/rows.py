@@ -23,19 +23,21 @@ COLUMNS: Final[dict[str, str]] = {
     'case_id': 'string', 'subject': 'string', 'sex': 'string', 'body_mass': 'double',
     'stature': 'double', 'age': 'double', 'strength_z': 'double', 'task': 'string',
     'technique': 'string', 'end_posture': 'string', 'asked_mass': 'double',
-    'box_depth': 'double', 'start_forward': 'double', 'start_up': 'double',
-    'end_forward': 'double', 'end_up': 'double', 'weight_effort': 'double',
-    'weight_box': 'double', 'status': 'int64', 'status_name': 'string', 'message': 'string',
+    'box_depth': 'double', 'start_forward': 'double', 'start_left': 'double',
+    'start_up': 'double', 'end_forward': 'double', 'end_left': 'double', 'end_up': 'double',
+    'weight_effort': 'double', 'weight_box': 'double', 'model': 'string', 'status': 'int64',
+    'status_name': 'string', 'message': 'string',
     'iterations': 'int64', 'objective': 'double', 'primal_residual': 'double',
     'dual_residual': 'double', 'build_time': 'double', 'solve_time': 'double',
     'case_time': 'double', 'runs': 'int64', 'box_mass': 'double', 'effort': 'double',
-    'duration': 'double', 'feet_forward': 'double', 'technique_index': 'double',
+    'duration': 'double', 'feet_forward': 'double', 'feet_left': 'double',
+    'feet_heading': 'double', 'technique_index': 'double',
     'peak_vertical_force': 'double', 'largest_share': 'double', 'largest_share_joint': 'string',
     'binding': 'string', 'worst_violation': 'string', 'host': 'string', 'process': 'int64',
 }  # fmt: skip
 """Columns of a study's table and their types; null: not known, as without a lift. Units: kg, m, s,
-N, years; `largest_share` is the largest torque by its limit; `binding` and `worst_violation` are
-separated by semicolons."""
+N, years, rad; `model` is plane or space; `largest_share` is the largest torque by its limit;
+`binding` and `worst_violation` are separated by semicolons."""
 
 
 @cache
@@ -88,8 +90,10 @@ def empty_row(case: Case) -> dict[str, Any]:
         'asked_mass': task.box_mass,
         'box_depth': task.box_size[0],
         'start_forward': task.start[0],
+        'start_left': task.start[1],
         'start_up': task.start[2],
         'end_forward': task.end[0],
+        'end_left': task.end[1],
         'end_up': task.end[2],
         'weight_effort': None if weighting is None else weighting.effort,
         'weight_box': None if weighting is None else weighting.box,
@@ -105,6 +109,7 @@ def _of_plan(planned: PlannedLift) -> dict[str, Any]:
     report, verification = planned.report, planned.prediction.verification
     status = SolveStatus(report.status)
     row: dict[str, Any] = {
+        'model': 'space' if planned.in_space else 'plane',
         'status': int(status),
         'status_name': status.name,
         'message': report.message,
@@ -129,6 +134,8 @@ def _of_plan(planned: PlannedLift) -> dict[str, Any]:
         'effort': summary.effort,
         'duration': summary.duration,
         'feet_forward': summary.ankle,
+        'feet_left': summary.left,
+        'feet_heading': summary.heading,
         'technique_index': summary.technique_index,
         'peak_vertical_force': summary.peak_vertical_force,
         'largest_share': worst.share,
