@@ -5,6 +5,7 @@
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -94,10 +95,7 @@ class BodyMotion:
             raise MotionError(f'motion.skeleton: one of {SKELETONS} is needed, '
                               f'got {self.skeleton!r}')
         for name in ('coordinates', 'point_names', 'frame_names'):
-            names = tuple(str(item) for item in getattr(self, name))
-            if len(set(names)) != len(names):
-                raise MotionError(f'motion.{name}: a name occurs twice in {names}')
-            object.__setattr__(self, name, names)
+            object.__setattr__(self, name, _checked_names(name, tuple(getattr(self, name))))
         time = _frozen('time', self.time)
         if time.ndim != 1 or time.size < 1:
             raise MotionError(f'motion.time: shape (n,), n >= 1 is needed, got {time.shape}')
@@ -115,12 +113,11 @@ class BodyMotion:
             shape = (time.size, *(sizes.get(str(item), item) for item in tail))
             if array.shape != shape:
                 raise MotionError(f'motion.{name}: shape {shape} is needed, got {array.shape}')
-            finite = np.isfinite(array)
-            if name not in _MAY_BE_NAN and not np.all(finite):
-                sample = int(np.argwhere(~finite)[0][0])
+            if name not in _MAY_BE_NAN and not np.isfinite(array).all():
+                sample = int(np.argwhere(~np.isfinite(array))[0][0])
                 raise MotionError(f'motion.{name}: not finite in sample {sample}')
             object.__setattr__(self, name, array)
-        norm = np.linalg.norm(self.frames, axis=-1)
+        norm = np.sqrt(np.einsum('...i,...i', self.frames, self.frames))
         if norm.size and np.max(np.abs(norm - 1.0)) > 1e-3:
             raise MotionError('motion.frames: a quaternion of length '
                               f'{norm.flat[np.argmax(np.abs(norm - 1.0))]:.4f} is no rotation')
@@ -272,6 +269,15 @@ def concatenate(blocks: Sequence[BodyMotion]) -> BodyMotion:
                 raise MotionError(f'concatenate: {name} differs between blocks')
     return first._with(**{name: np.concatenate([getattr(block, name) for block in blocks])
                           for name in ('time', *_TAIL)})
+
+
+@lru_cache(maxsize=64)
+def _checked_names(field: str, given: tuple[str, ...]) -> tuple[str, ...]:
+    """Names as text; remembered, as every live sample has the same."""
+    names = tuple(str(item) for item in given)
+    if len(set(names)) != len(names):
+        raise MotionError(f'motion.{field}: a name occurs twice in {names}')
+    return names
 
 
 def _frozen(name: str, value: npt.ArrayLike) -> Array:

@@ -145,12 +145,14 @@ class Skeleton:
     def frame_array(self, q: npt.ArrayLike) -> Array:
         """Quaternions (n, n_f, 4) xyzw of the shared frames for coordinates (n, n_q)."""
         block = self._block('q', q)
-        if self.uses_compiled:
-            rotation = np.array([self._segment_frames(row)[0][self.frame_segment]
-                                 for row in block])
-        else:
-            rotation = tree_kinematics.segment_frames(self.tree, block)[0][:, self.frame_segment]
-        return quaternion_from_matrix(rotation)
+        if not self.uses_compiled:
+            return quaternion_from_matrix(
+                tree_kinematics.segment_frames(self.tree, block)[0][:, self.frame_segment])
+        # Numba loads for long.
+        from human_model.compiled_quaternions import quaternions
+
+        return np.array([quaternions(self._segment_frames(row)[0][self.frame_segment])
+                         for row in block])
 
     def point_jacobian(self, q: npt.ArrayLike, segment: str, local: npt.ArrayLike) -> Array:
         """Jacobian (n, 3, n_q) of points (n, 3) [m] given in a segment's anatomical frame."""

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from human_model import frames
+from human_model import compiled_quaternions, frames
 from human_model.errors import HumanModelError
 
 components = st.floats(-1e3, 1e3)
@@ -84,3 +84,13 @@ def test_stacks_keep_their_shape(rng):
 def test_wrong_shapes_are_refused(function, value):
     with pytest.raises(HumanModelError, match=r'shape|length'):
         function(value)
+
+
+def test_compiled_quaternions_are_those_of_the_plain_function():
+    """Any rotation, half turns about the axes among them."""
+    rng = np.random.default_rng(3)
+    q = rng.normal(size=(200, 4))
+    half_turns = np.vstack([np.eye(4), [[1.0, 1.0, 0.0, 0.0], [0.0, 1.0, 1.0, 1e-9]]])
+    rotation = frames.matrix_from_quaternion(np.vstack([q, half_turns]))
+    compiled = compiled_quaternions.quaternions(rotation)
+    np.testing.assert_allclose(compiled, frames.quaternion_from_matrix(rotation), atol=1e-12)

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import gc
 import importlib
 import threading
 from collections import Counter
@@ -99,8 +100,14 @@ class PipelineNode(LifecycleNode):
         return TransitionCallbackReturn.SUCCESS
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Start publishing; load in the background what is needed later."""
+        """Start publishing; load in the background what is needed later.
+
+        What has been loaded by now stays: searching it for garbage again and again would hold up
+        a live sample by tens of milliseconds.
+        """
         self.active = True
+        gc.collect()
+        gc.freeze()
         threading.Thread(target=self._load_later, name='load later').start()
         return super().on_activate(state)
 

@@ -34,6 +34,7 @@ from motion_tracker.core.tracked import DetectedEvent, Notice, Output, TrackedFr
 from motion_tracker.core.tracked import MeasuredLift as TrackedLift
 from motion_tracker.core.tracker import MotionTracker
 from motion_tracker.core.warm_up import warm_up
+from motion_tracker.marker_cdr import MarkerReader
 
 #: Samples kept until person and task are known: 20 s of two 2500 Hz plates.
 EARLY_SAMPLES: Final = 100_000
@@ -76,7 +77,8 @@ class MotionTrackerNode(PipelineNode):
                      for side in SIDES]
         self.subscribe(SubjectMsg, 'subject', self._on_subject, qos.LATCHED)
         self.subscribe(Task, 'task', self._on_task, qos.LATCHED)
-        self.subscribe(Markers, STREAMS['markers'], self._on_markers, qos.FRAMES)
+        self._reader = MarkerReader()
+        self.subscribe(Markers, STREAMS['markers'], self._on_markers, qos.FRAMES, raw=True)
         self.subscribe(PoseStamped, STREAMS['box'], self._on_box, qos.FRAMES)
         for side in SIDES:
             self.subscribe(WrenchStamped, STREAMS[side],
@@ -107,8 +109,8 @@ class MotionTrackerNode(PipelineNode):
         self._task = task
         self._work_off_early()
 
-    def _on_markers(self, message: Markers) -> None:
-        stamp, names, positions = conversions.markers_from_msg(message)
+    def _on_markers(self, data: bytes) -> None:
+        stamp, names, positions = self._reader.read(data)
         self._frames += 1
         if self._frames % COUNT_FRAMES == 0:
             self._report_counts()
@@ -204,6 +206,8 @@ class MotionTrackerNode(PipelineNode):
 
     def _publish_one(self, output: Any) -> None:
         if isinstance(output, TrackedFrame):
+            # First what the next node of the chain waits for.
+            self._motion.publish(conversions.body_motion_to_msg(output))
             self._joints.publish(conversions.joint_state_to_msg(output))
             reaction = conversions.ground_reaction_to_msg(output)
             if reaction is not None:
@@ -212,7 +216,6 @@ class MotionTrackerNode(PipelineNode):
                 point = conversions.cop_to_msg(output, side)
                 if point is not None:
                     publisher.publish(point)
-            self._motion.publish(conversions.body_motion_to_msg(output))
             if output.message and not output.solution.ok:
                 self.report_error(f'frame not good: {output.message}')
         elif isinstance(output, DetectedEvent):

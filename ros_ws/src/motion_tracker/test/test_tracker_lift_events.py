@@ -10,6 +10,7 @@ from motion_tracker.core.lift_events import (
     LiftEventDetector,
     LiftEventSettings,
     LiftPhase,
+    _parabola_at_zero,
     detect_lifts,
     pair_lifts,
 )
@@ -144,3 +145,11 @@ def test_bad_settings_and_unsorted_stamps_are_refused():
         detector.push(1.0, 0.1)
     with pytest.raises(LiftEventError, match='one shape'):
         detect_lifts(np.arange(3), np.arange(4))
+
+
+@pytest.mark.parametrize('samples', [4, 9, 11])
+def test_parabola_is_that_of_least_squares(samples):
+    rng = np.random.default_rng(samples)
+    t, z = np.sort(rng.uniform(-1.0, 1.0, samples)), rng.normal(size=samples)
+    height_and_slope = np.polynomial.polynomial.polyfit(t, z, 2)[:2]
+    assert _parabola_at_zero(t.tolist(), z.tolist()) == pytest.approx(tuple(height_and_slope))

@@ -222,12 +222,15 @@ class LiftEventDetector:
         last = at + 1
         while last < len(self._time) and self._time[last] - centre <= half:
             last += 1
-        t = np.array(self._time[first:last]) - centre
-        z = np.array(self._raw[first:last])
-        degree = min(2, len(t) - 1)
-        powers = t[:, None] ** np.arange(degree + 1)
-        coefficients = np.linalg.lstsq(powers, z, rcond=None)[0]
-        return float(coefficients[0]), float(coefficients[1]) if degree else 0.0
+        times = [(time - centre) / half for time in self._time[first:last]]
+        heights = self._raw[first:last]
+        if len(times) > 3:
+            height, slope = _parabola_at_zero(times, heights)
+            return height, slope / half
+        powers = np.array(times)[:, None] ** np.arange(len(times))
+        coefficients = np.linalg.solve(powers, np.array(heights))
+        return (float(coefficients[0]),
+                float(coefficients[1]) / half if len(times) > 1 else 0.0)
 
     def _at_rest(self, first: int, last: int) -> bool:
         """Whether the smoothed speed stays below rest speed over the samples first..last."""
@@ -293,6 +296,29 @@ class LiftEventDetector:
         for samples in (self._time, self._raw, self._body, self._smooth, self._speed):
             del samples[:drop]
         self._base = self._base - drop if self._base >= 0 else -1
+
+
+def _parabola_at_zero(t: list[float], z: list[float]) -> tuple[float, float]:
+    """Value and slope at 0 of the least-squares parabola through more than three points.
+
+    By the normal equations in plain numbers: the points are few, and ``t`` is of order one.
+    """
+    n, s1, s2, s3, s4 = float(len(t)), 0.0, 0.0, 0.0, 0.0
+    r0 = r1 = r2 = 0.0
+    for x, y in zip(t, z, strict=True):
+        square = x * x
+        s1 += x
+        s2 += square
+        s3 += square * x
+        s4 += square * square
+        r0 += y
+        r1 += x * y
+        r2 += square * y
+    # Cofactors of the first two columns of [[n, s1, s2], [s1, s2, s3], [s2, s3, s4]].
+    a, b, c = s2 * s4 - s3 * s3, s2 * s3 - s1 * s4, s1 * s3 - s2 * s2
+    d, e = n * s4 - s2 * s2, s1 * s2 - n * s3
+    determinant = n * a + s1 * b + s2 * c
+    return (a * r0 + b * r1 + c * r2) / determinant, (b * r0 + d * r1 + e * r2) / determinant
 
 
 def _change_point(time: Array, height: Array) -> tuple[float, float]:

@@ -33,6 +33,9 @@ class MarkerFrames:
         self._row = {name: i for i, name in enumerate(names)}
         self._noticed = set(known)
         self._counts = counts
+        self._names: tuple[str, ...] = ()
+        self._twice = 0
+        self._rows = self._places = np.zeros(0, dtype=np.intp)
 
     def arrange(self, stamp: float, names: Sequence[str], positions: npt.ArrayLike,
                 ) -> tuple[Array, list[str]]:
@@ -49,23 +52,29 @@ class MarkerFrames:
         if len(array) != len(names):
             raise TrackerError(f'markers at {stamp:.3f} s: {len(names)} names, '
                                f'{len(array)} positions')
-        largest = float(np.max(np.abs(array[np.isfinite(array)]), initial=0.0))
+        size = np.abs(array)
+        largest = float(size[size < np.inf].max(initial=0.0))
         if largest > LARGEST_POSITION:
             raise TrackerError(f'markers at {stamp:.3f} s: a coordinate is {largest:.0f} m; are '
                                'the markers in millimetres?')
+        unknown: list[str] = []
+        if tuple(names) != self._names:
+            unknown = self._plan(tuple(names))
+        if self._twice:
+            self._counts['markers: name twice in a frame'] += self._twice
         target = np.full((len(self._row), 3), np.nan)
-        seen: set[str] = set()
-        unknown = []
-        for name, position in zip(names, array, strict=True):
-            row = self._row.get(name)
-            if row is None:
-                if name not in self._noticed:
-                    self._noticed.add(name)
-                    unknown.append(name)
-            elif name in seen:
-                self._counts['markers: name twice in a frame'] += 1
-                target[row] = np.nan
-            else:
-                seen.add(name)
-                target[row] = position
+        target[self._rows] = array[self._places]
         return target, unknown
+
+    def _plan(self, names: tuple[str, ...]) -> list[str]:
+        """Find out which position goes where; return names not seen before."""
+        known = [name for name in names if name in self._row]
+        once = [name for name, number in Counter(known).items() if number == 1]
+        self._names = names
+        self._twice = len(known) - len(set(known))
+        self._rows = np.array([self._row[name] for name in once], dtype=np.intp)
+        self._places = np.array([names.index(name) for name in once], dtype=np.intp)
+        unknown = [name for name in dict.fromkeys(names)
+                   if name not in self._row and name not in self._noticed]
+        self._noticed.update(unknown)
+        return unknown
