@@ -11,6 +11,7 @@ import numpy.typing as npt
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Point, Quaternion, TransformStamped, Vector3
 from lifting_interfaces.msg import SpineLoad
+from rclpy.serialization import serialize_message
 from std_msgs.msg import ColorRGBA
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
@@ -20,6 +21,11 @@ from lifting_node.stamps import to_seconds
 from lifting_visualization.core.exceptions import PictureError
 from lifting_visualization.core.link_frames import LinkFrames
 from lifting_visualization.core.shapes import Array, Kind, Shape
+
+#: Bytes before the body of a serialised message.
+_HEAD = 4
+#: Begins the stamps that mark their own places; far from all lengths and characters.
+_MARK = 900_000_001
 
 _TYPES = {
     Kind.LINES: Marker.LINE_LIST,
@@ -71,20 +77,38 @@ def _quaternion(values: Sequence[float]) -> Quaternion:
 
 
 class TransformWriter:
-    """The message of the moving links, of which only the numbers change."""
+    """The serialised message of the moving links, of which only the numbers change.
+
+    Setting and serialising 40 transforms field by field takes half of the node's processor time:
+    the message is serialised once, and numbers and stamps are written where they are in it.
+    """
 
     def __init__(self, links: LinkFrames) -> None:
-        self._message = TFMessage(transforms=[
+        message = TFMessage(transforms=[
             _named(parent, child)
             for parent, child in zip(links.parents, links.children, strict=True)])
-
-    def message(self, stamp: Time, transforms: Array) -> TFMessage:
-        """Return the message of translations and quaternions (n, 7); good until the next one."""
-        for entry, values in zip(self._message.transforms, transforms.tolist(), strict=True):
-            entry.header.stamp = stamp
+        # Numbers that occur nowhere else mark the places.
+        marks = 0.5 + np.arange(7.0 * len(links.children)).reshape(-1, 7)
+        for k, (entry, values) in enumerate(zip(message.transforms, marks.tolist(), strict=True)):
+            entry.header.stamp = Time(sec=_MARK + k, nanosec=_MARK + k)
             place, turn = entry.transform.translation, entry.transform.rotation
             place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w = values
-        return self._message
+        self._data = np.frombuffer(bytearray(serialize_message(message)), np.uint8)
+        # CDR aligns numbers to their size, counted from after the four bytes of its head.
+        body = self._data[_HEAD:]
+        self._numbers = body[:body.size // 8 * 8].view(np.float64)
+        self._words = body[:body.size // 4 * 4].view(np.int32)
+        self._at = np.array([np.flatnonzero(self._numbers == mark) for mark in marks.ravel()])
+        stamps = _MARK + np.arange(len(marks))
+        self._stamps = np.array([np.flatnonzero(self._words == mark) for mark in stamps])
+        if self._at.shape != (marks.size, 1) or self._stamps.shape != (len(marks), 2):
+            raise PictureError('tf2_msgs/TFMessage: the places of its numbers were not found')
+
+    def message(self, stamp: Time, transforms: Array) -> bytes:
+        """Return the serialised message of translations and quaternions (n, 7)."""
+        self._numbers[self._at[:, 0]] = transforms.ravel()
+        self._words[self._stamps] = stamp.sec, stamp.nanosec
+        return self._data.tobytes()
 
 
 def fixed_to_msg(links: LinkFrames, stamp: Time) -> TFMessage:

@@ -12,6 +12,8 @@ pytest.importorskip('rclpy', reason='rclpy is not installed')
 pytest.importorskip('tf2_msgs.msg', reason='tf2_msgs is neither built nor installed')
 
 from lifting_interfaces.msg import SpineLoad
+from rclpy.serialization import deserialize_message
+from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker
 
 from lifting_node.stamps import to_stamp
@@ -52,13 +54,14 @@ def test_markers():
     assert conversions.clear_msg(STAMP).markers[0].action == Marker.DELETEALL
 
 
-def test_transforms(skeleton):
-    links = LinkFrames(skeleton, 'cell_3/')
+@pytest.mark.parametrize('station', ['', 'a/', 'cell_3/', 'line_12_cell_3/'])
+def test_transforms(skeleton, station):
+    links = LinkFrames(skeleton, station)
     writer = conversions.TransformWriter(links)
     rng = np.random.default_rng(7)
     for stamp in (to_stamp(1.0), STAMP):
         values = links.transforms(skeleton.coordinates, rng.normal(size=40))
-        message = writer.message(stamp, values)
+        message = deserialize_message(writer.message(stamp, values), TFMessage)
     assert [t.child_frame_id for t in message.transforms] == list(links.children)
     assert message.transforms[0].header.frame_id == 'world'
     for entry, row in zip(message.transforms, values, strict=True):
@@ -66,7 +69,8 @@ def test_transforms(skeleton):
         assert entry.header.stamp == STAMP
         assert [place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w] == row.tolist()
     (head,) = conversions.fixed_to_msg(links, STAMP).transforms
-    assert (head.header.frame_id, head.child_frame_id) == ('cell_3/thorax', 'cell_3/head')
+    assert (head.header.frame_id, head.child_frame_id) == (
+        f'{station}thorax', f'{station}head')
     assert head.transform.translation.z == pytest.approx(skeleton.parameters.lengths['c7_height'])
 
 
