@@ -1,0 +1,112 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures across packages: limits of the monitor, links of the URDF, a recorded run."""
+
+from __future__ import annotations
+
+import csv
+from importlib.resources import files
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+import yaml
+
+from human_model.frames import matrix_from_quaternion
+from lifting_bringup.bags.reader import BagReader
+from lifting_bringup.session import RunOptions, run_online
+from lifting_node.conversions import motion_from_msg
+from lifting_node.stamps import to_seconds
+
+BAG = 'symmetric_7kg'
+STATION = '/station_1/'
+RATE = 4.0
+
+pytestmark = pytest.mark.timeout(180)
+
+
+def test_colours_change_at_the_limits_of_the_monitor() -> None:
+    parameters = yaml.safe_load(
+        files('lifting_visualization').joinpath('data/parameters.yaml').read_text('utf-8'))
+    lines = files('injury_monitor').joinpath('data/limits.csv').read_text('utf-8').splitlines()
+    limits = {row['limit']: float(row['value'])
+              for row in csv.DictReader(line for line in lines if not line.startswith('#'))}
+    for name in ('compression_action', 'compression_maximum'):
+        assert parameters[name]['default'] == limits[name]
+
+
+@pytest.fixture(scope='module')
+def recorded(bags: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, list]:
+    """Run a recording with its pictures recorded; return stamps [s] and messages by topic."""
+    output = tmp_path_factory.mktemp('pictures')
+    report = run_online(RunOptions(bags / BAG, output, rate=RATE, settle_timeout=60.0,
+                                   visualize=True, record_visualization=True))
+    assert report.exit_codes['lifting_visualization'] in (0, -15)
+    found: dict[str, list] = {}
+    with BagReader(report.results) as bag:
+        for topic, stamp, message in bag.messages(list(bag.topics)):
+            found.setdefault(topic.removeprefix(STATION), []).append((stamp * 1e-9, message))
+    return found
+
+
+def test_urdf_and_tf_have_the_same_links(recorded: dict[str, list]) -> None:
+    ((_, description),) = recorded['robot_description']
+    robot = ElementTree.fromstring(description.data)
+    joints = {(joint.find('parent').get('link'), joint.find('child').get('link'))
+              for joint in robot.findall('joint')}
+    prefix = STATION.strip('/') + '/'
+    entries = [*recorded['/tf'][-1][1].transforms, *recorded['/tf_static'][-1][1].transforms]
+    assert joints == {(entry.header.frame_id.removeprefix(prefix),
+                       entry.child_frame_id.removeprefix(prefix)) for entry in entries}
+
+
+def test_tf_puts_the_links_where_the_tracker_has_the_joints(recorded: dict[str, list]) -> None:
+    """The live links against the markers of the same instant, in the same file."""
+    pictures = {to_seconds(message.markers[0].header.stamp): message.markers
+                for _, message in recorded['visualization']
+                if message.markers[0].ns == 'person'}
+    ((_, lift),) = recorded['measured_lift']
+    names = motion_from_msg(lift.motion).point_names
+    compared = 0
+    for _, message in recorded['/tf'][::50]:
+        drawn = pictures.get(to_seconds(message.transforms[0].header.stamp))
+        if drawn is None:
+            continue
+        poses = {'world': np.eye(4)}
+        for entry in message.transforms:
+            place, turn = entry.transform.translation, entry.transform.rotation
+            step = np.eye(4)
+            step[:3, :3] = matrix_from_quaternion([turn.x, turn.y, turn.z, turn.w])
+            step[:3, 3] = place.x, place.y, place.z
+            poses[entry.child_frame_id] = poses[entry.header.frame_id] @ step
+        joints = {name: np.array([p.x, p.y, p.z])
+                  for name, p in zip(names, drawn[1].points, strict=True)}
+        for point, link in (('l5_s1', 'lumbar'), ('elbow_r', 'forearm_r'), ('wrist_l', 'hand_l'),
+                            ('knee_r', 'shank_r'), ('ankle_l', 'foot_l'), ('mtp_r', 'toes_r')):
+            np.testing.assert_allclose(poses[f'station_1/{link}'][:3, 3], joints[point],
+                                       atol=1e-9)
+            compared += 1
+    assert compared >= 12
+
+
+def test_pictures_lie_in_the_time_of_the_recording(recorded: dict[str, list]) -> None:
+    live = [stamp for stamp, _ in recorded['joint_states']]
+    for topic in ('robot_description', 'visualization', '/tf', '/tf_static'):
+        stamps = [stamp for stamp, _ in recorded[topic]]
+        assert min(stamps) >= min(live) - 1.0, topic
+        # The ghost goes on after the recording's end, until the run has settled.
+        assert max(stamps) <= max(live) + 61.0, topic
+
+
+def test_load_and_optimal_lift_are_shown(recorded: dict[str, list]) -> None:
+    texts: dict[str, set[str]] = {}
+    for _, message in recorded['visualization']:
+        for marker in message.markers:
+            if marker.text:
+                texts.setdefault(marker.ns, set()).add(marker.text)
+    assert texts['predicted'] == {'optimal lift, 7 kg'}
+    compressions = {f'{value:.0f} N' for _, load in recorded['spine_load']
+                    if load.source == load.LIVE for value in load.compression}
+    assert len(texts['l5_s1']) > 10
+    assert texts['l5_s1'] <= compressions
