@@ -27,6 +27,7 @@ from lift_predictor.core.sagittal.plane import SagittalPlane
 from lift_predictor.core.sagittal.starts import make_starts
 from lift_predictor.core.sagittal.task import POSTURE_TOLERANCE, LiftTask2D, lowest_grip
 from lift_predictor.core.solvers.optimum import Start
+from lift_predictor.core.solvers.stop import StopFlag
 
 Array = NDArray[np.float64]
 
@@ -49,8 +50,13 @@ class Plan:
     task: LiftTask2D
     pairs: tuple[Array, ...]
 
-    def starts(self, spline: RestToRestSpline, limit: int | None = None) -> tuple[Start, ...]:
-        """Return initial guesses, at most `limit`.
+    def starts(
+        self,
+        spline: RestToRestSpline,
+        limit: int | None = None,
+        stop: StopFlag | None = None,
+    ) -> tuple[Start, ...]:
+        """Return initial guesses, at most `limit`; `stop` may end the work in between.
 
         For each pair of end postures there is a smooth step and an arc clear of the body; first
         come the steps and arcs of the first pair, then those of the next.
@@ -59,6 +65,8 @@ class Plan:
         for number, ends in enumerate(self.pairs, 1):
             if limit is not None and len(starts) >= limit:
                 break
+            if stop is not None:
+                stop.check()
             made = make_starts(replace(self.task, ends=ends), spline)
             starts += [replace(start, name=f'{start.name} {number}') for start in made]
         return tuple(starts[:limit])
@@ -69,6 +77,7 @@ def build_plan(
     task: PlanTask,
     ankle: float | None = None,
     tolerance: float = POSTURE_TOLERANCE,
+    stop: StopFlag | None = None,
 ) -> Plan:
     """Build the programme's task for feet at a given place.
 
@@ -83,6 +92,8 @@ def build_plan(
     tolerance : float
         Epsilon of equation 4.8 [rad], about the first posture found where a technique or an
         upright end is asked for. Otherwise the postures are free between the joint limits.
+    stop : StopFlag, optional
+        Ends the work before the next posture is sought (`CancelledError`).
 
     Raises
     ------
@@ -106,9 +117,9 @@ def build_plan(
     hand = _grips(task)
     style = technique(task.technique)
     guesses = (*LOW_GUESSES, *HIGH_GUESSES)
-    first = find_postures('start', guesses, hand[0], person, parameters, style)
+    first = find_postures('start', guesses, hand[0], person, parameters, style, stop)
     guesses = (*HIGH_GUESSES, *LOW_GUESSES)
-    last = find_postures('end', guesses, hand[1], person, parameters)
+    last = find_postures('end', guesses, hand[1], person, parameters, stop=stop)
     pairs = _pairs(first, last)
     free = np.full((3, N_JOINTS), np.inf)
     low, high = -free, free.copy()

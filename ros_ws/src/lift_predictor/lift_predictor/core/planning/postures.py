@@ -16,6 +16,7 @@ from lift_predictor.core.planning.technique import Technique, lowering, techniqu
 from lift_predictor.core.sagittal.kinematics import REACHED, chain_positions
 from lift_predictor.core.sagittal.parameters import JOINTS, LiftParameters
 from lift_predictor.core.sagittal.person import Person
+from lift_predictor.core.solvers.stop import StopFlag
 
 Array = NDArray[np.float64]
 
@@ -132,15 +133,20 @@ def find_postures(
     person: Person,
     parameters: LiftParameters,
     technique: Technique | None = None,
+    stop: StopFlag | None = None,
 ) -> tuple[Posture, ...]:
-    """Find the good postures from several guesses.
+    """Find the good postures from several guesses; `stop` may end the work between two.
 
     Raises
     ------
     UnreachableError
         There is none: names field, place, what is missing and the joints at their limits.
     """
-    found = [find_posture(g, grip, person, parameters, technique) for g in guesses]
+    found = []
+    for guess in guesses:
+        if stop is not None:
+            stop.check()
+        found.append(find_posture(guess, grip, person, parameters, technique))
     good = tuple(posture for posture in found if posture.good)
     if good:
         return good

@@ -126,9 +126,8 @@ def solve_plan(
     style = technique(task.technique)
     tolerance = POSTURE_TOLERANCE
     for _ in range(WINDOW_HALVINGS + 1):
-        predictor.stop.check()
-        plan = build_plan(predictor.person, task, ankle, tolerance)
-        made = plan.starts(predictor.programme.grid.spline, n_starts)
+        plan = build_plan(predictor.person, task, ankle, tolerance, predictor.stop)
+        made = plan.starts(predictor.programme.grid.spline, n_starts, predictor.stop)
         starts = (*first, *made)
         if task.box_mass is None:
             heaviest = solve_maximum_weight(
