@@ -21,7 +21,7 @@ from lifting_bringup import (
     urdf_command,
 )
 from lifting_bringup.bags.exceptions import BagError
-from lifting_bringup.graph_errors import GraphError
+from lifting_bringup.graph_errors import GraphError, SessionError
 from lifting_bringup.interruption import stopped_by_signals
 from lifting_bringup.node_process import discovery, node_processes
 
@@ -55,6 +55,9 @@ def _parser() -> argparse.ArgumentParser:
     demo = commands.add_parser('demo', help='play a recorded lift through the whole graph')
     demo.add_argument('--bags', type=Path, default=Path('bags'), help='folder of the recordings')
     demo.add_argument('--output', type=Path, default=Path('out/demo'), help='where results go')
+    demo.add_argument(
+        '--visualize', action='store_true', help='also publish markers, /tf and the URDF'
+    )
     demo.set_defaults(handler=_demo)
 
     run = commands.add_parser('run', help='run a recording through the graph and report')
@@ -130,7 +133,7 @@ def _demo(options: argparse.Namespace) -> int:
             rate=1.0,
             station='station_1',
             offline=False,
-            visualize=False,
+            visualize=options.visualize,
             record_visualization=False,
         )
     )
@@ -139,13 +142,15 @@ def _demo(options: argparse.Namespace) -> int:
 def _run(options: argparse.Namespace) -> int:
     began = time.monotonic()
     output = options.output or Path('out') / options.bag.stem
+    visualize = options.visualize or options.record_visualization
+    if options.offline and visualize:
+        raise SessionError('--offline starts no node, hence there is nothing to visualize')
     if options.offline:
         from lifting_bringup.offline import run_offline
 
         results = run_offline(options.bag, output, options.station)
         run = 'offline'
     else:
-        visualize = options.visualize or options.record_visualization
         with (
             stopped_by_signals(),
             node_processes(output / 'logs', options.station, visualize) as processes,
