@@ -207,7 +207,7 @@ def test_instants_are_samples_and_must_be_in_the_lift(box_lift):
 
 
 def test_a_sample_that_cannot_be_taken_over_is_named(box_lift, monkeypatch):
-    transfer = box_lift.analyzer.new_transfer(box_lift.body.skeleton)
     monkeypatch.setattr('muscle_analyzer.core.transfer.MAX_ITERATIONS', 0)
+    transfer = box_lift.analyzer.new_transfer(box_lift.body.skeleton)
     with pytest.raises(TransferError, match=r'sample at 0\.000 s: not converged in 0 iterations'):
         motion_on_model(transfer, box_lift.body, 1.7e9)

@@ -11,7 +11,6 @@ whole lifts take the same way.
 from __future__ import annotations
 
 import time
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,12 +21,12 @@ from human_model.skeleton import Skeleton
 from human_model.skeleton_2d import Skeleton2D
 from human_model.skeleton_3d import Skeleton3D
 from human_model.subject import Subject
-from muscle_analyzer.core.analysis_sample import AnalysisSample, SampleSolver
 from muscle_analyzer.core.analyzer_options import MuscleAnalyzerOptions
+from muscle_analyzer.core.block_solver import BlockSolver
 from muscle_analyzer.core.disc_frame import disc_option
 from muscle_analyzer.core.exceptions import InputArrayError, NotConfiguredError
 from muscle_analyzer.core.model_cache import load_model
-from muscle_analyzer.core.muscle_analysis import MuscleAnalysis
+from muscle_analyzer.core.muscle_analysis import MuscleAnalysis, Origin
 from muscle_analyzer.core.muscle_strength import force_factors
 from muscle_analyzer.core.osim_model import OsimModel
 from muscle_analyzer.core.segment_masses import MassDistribution, segment_masses
@@ -55,10 +54,10 @@ class MuscleAnalyzer:
 
     def __init__(self, options: MuscleAnalyzerOptions | None = None) -> None:
         self.options = options or MuscleAnalyzerOptions()
-        self._disc = disc_option(self.options.disc_frame)
+        disc_option(self.options.disc_frame)  # An unknown one is refused here already.
         self._generic: OsimModel | None = None
         self._subject: Subject | None = None
-        self._streams: dict[tuple[str, str], tuple[MotionTransfer, SampleSolver]] = {}
+        self._streams: dict[tuple[str, str], tuple[MotionTransfer, BlockSolver]] = {}
         self._limits: dict[str, TorqueLimits] = {}
 
     def configure(self, subject: Subject) -> None:
@@ -111,14 +110,14 @@ class MuscleAnalyzer:
         self.joint_torques(self.analyze(motion), motion)
         self._streams = {}
 
-    def _stream(self, source: str, skeleton: str) -> tuple[MotionTransfer, SampleSolver]:
+    def _stream(self, source: str, skeleton: str) -> tuple[MotionTransfer, BlockSolver]:
         """Give the warm-started solvers of one kind of motion."""
         key = (source, skeleton)
         if key not in self._streams:
             assert self._subject is not None
             self._streams[key] = (
                 MotionTransfer(self._model, _SKELETONS[skeleton].of(self._subject)),
-                SampleSolver(self._model, self.options),
+                BlockSolver(self._model, self.options),
             )
         return self._streams[key]
 
@@ -190,15 +189,11 @@ class MuscleAnalyzer:
         if source != 'live' and not continued:
             transfer.reset()
             solver.reset()
-        samples = []
-        for k in range(len(motion)):
-            began = time.perf_counter()
-            pose = transfer.step(motion, k)
-            transferred = time.perf_counter() - began
-            sample = solver.solve(pose, motion, k, int(tracked[k]))
-            report = replace(sample.report, build_time=sample.report.build_time + transferred)
-            samples.append(replace(sample, report=report))
-        return self._collect(samples, solver, motion, lift_id, source)
+        began = time.perf_counter()
+        poses = transfer.block(motion)
+        elapsed = time.perf_counter() - began
+        origin = Origin(lift_id, source, self._subject.pseudonym, self._subject.mass)
+        return solver.solve(poses, motion, tracked, origin, elapsed)
 
     def joint_torques(self, analysis: MuscleAnalysis, motion: BodyMotion) -> JointTorques:
         """
@@ -228,32 +223,3 @@ class MuscleAnalyzer:
                 self.options.coefficient_set,
             )
         return self._limits[motion.skeleton].of(analysis, motion)
-
-    def _collect(
-        self,
-        samples: list[AnalysisSample],
-        solver: SampleSolver,
-        motion: BodyMotion,
-        lift_id: str,
-        source: str,
-    ) -> MuscleAnalysis:
-        assert self._subject is not None
-
-        def stack(name: str) -> Array:
-            return np.array([getattr(sample, name) for sample in samples])
-
-        return MuscleAnalysis(
-            lift_id=lift_id,
-            source=source,
-            pseudonym=self._subject.pseudonym,
-            body_mass=self._subject.mass,
-            time=motion.time,
-            muscle_names=solver.muscle_names,
-            coordinate_names=solver.coordinate_names,
-            joint_names=solver.joint_names,
-            disc_frame=str(self._disc),
-            torque_status=np.array([int(sample.torque_status) for sample in samples], np.int64),
-            reports=tuple(sample.report for sample in samples),
-            spine_reports=tuple(sample.spine_report for sample in samples),
-            **{name: stack(name) for name in AnalysisSample.array_fields()},
-        )

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from human_model.report import SolveReport
 from muscle_analyzer.core.analyzer_options import MuscleAnalyzerOptions
 from muscle_analyzer.core.disc_frame import DiscLoad, disc_option, disc_setting
 from muscle_analyzer.core.exceptions import InputArrayError
@@ -121,6 +122,7 @@ class LoadSolver:
         muscles = MuscleParameters.of(model.source.muscles)
         frames = JointLoadFrames(model, self.disc)
         self.joint_names = frames.names
+        self.lumbosacral = frames.joints.lumbosacral
         self.optimization = StaticOptimization(
             self.muscle_names,
             read_reserves(self.coordinate_names),
@@ -211,13 +213,11 @@ class LoadSolver:
         solve_time
             To be reported [s].
         """
-        outcome = Outcome(
-            loads.activation[k], loads.reserve[k], loads.multiplier[k], loads.residual[k],
-            loads.weak[k], int(loads.iterations[k]), bool(loads.converged[k]),
-        )  # fmt: skip
-        balance = self.optimization.balance(outcome, Account(*loads.account[k]), 0.0, solve_time)
+        outcome = _outcome(loads, k)
+        found = Account(*loads.account[k].tolist())
+        balance = self.optimization.balance(outcome, found, 0.0, solve_time)
         joints = JointLoad(loads.joint_force[k], loads.joint_moment[k])
-        l5 = self._frame.joints.lumbosacral
+        l5 = self.lumbosacral
         above, below = loads.net_moment[k]
         return LoadSolution(
             force=loads.force[k],
@@ -229,6 +229,24 @@ class LoadSolver:
             net=NetMoment(above, below, above - below),
             residual=loads.pelvis_residual[k],
         )
+
+    def report(
+        self, loads: FrameLoads, k: int, build_time: float, solve_time: float
+    ) -> SolveReport:
+        """
+        Give the report of one state of a block.
+
+        Parameters
+        ----------
+        loads
+            Of the block.
+        k
+            Number of the state.
+        build_time, solve_time
+            To be reported [s].
+        """
+        found = Account(*loads.account[k].tolist())
+        return self.optimization.report(_outcome(loads, k), found, build_time, solve_time)
 
     def _min_max(self, motion: tuple[Array, Array, Array, Array], out: FrameLoads) -> None:
         """Solve states with the criterion that has an optimiser of its own."""
@@ -254,3 +272,16 @@ class LoadSolver:
             f'coordinate {self.coordinate_names[j]}: torque {loads.torque[k, j]} or moment arms '
             'are not finite'
         )
+
+
+def _outcome(loads: FrameLoads, k: int) -> Outcome:
+    """Give what the optimisation found in one state of a block."""
+    return Outcome(
+        loads.activation[k],
+        loads.reserve[k],
+        loads.multiplier[k],
+        loads.residual[k],
+        loads.weak[k],
+        int(loads.iterations[k]),
+        bool(loads.converged[k]),
+    )

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,15 @@ from human_model.report import SolveReport, SolveStatus
 from muscle_analyzer.core.verdict import worst
 
 Array = NDArray[np.float64]
+
+
+class Origin(NamedTuple):
+    """Whose block is analysed and where it comes from; see `MuscleAnalysis`."""
+
+    lift_id: str
+    source: str
+    pseudonym: str
+    body_mass: float
 
 
 @dataclass(frozen=True, eq=False)

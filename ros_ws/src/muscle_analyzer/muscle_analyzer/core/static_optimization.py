@@ -287,26 +287,31 @@ class StaticOptimization:
         build_time, solve_time
             To build and to solve the problem [s].
         """
-        at_upper = outcome.activation >= self.actuators.upper - AT_BOUND
-        status, message = self._verdict(outcome, at_upper)
         return MuscleBalance(
             activation=outcome.activation,
             reserve=outcome.reserve,
             multiplier=outcome.multiplier,
             residual=outcome.residual,
             at_lower=outcome.activation <= self.actuators.lower + AT_BOUND,
-            at_upper=at_upper,
+            at_upper=outcome.activation >= self.actuators.upper - AT_BOUND,
             unbalanced=tuple(self.coordinate_names[j] for j in np.flatnonzero(outcome.weak)),
-            report=SolveReport(
-                status=status,
-                message=message,
-                iterations=int(outcome.iterations),
-                objective=float(found.objective),
-                primal_residual=float(found.primal),
-                dual_residual=float(found.dual),
-                build_time=build_time,
-                solve_time=solve_time,
-            ),
+            report=self.report(outcome, found, build_time, solve_time),
+        )
+
+    def report(
+        self, outcome: Outcome, found: Account, build_time: float, solve_time: float
+    ) -> SolveReport:
+        """Give the report of a solution alone; parameters as in `balance`."""
+        status, message = self._verdict(outcome)
+        return SolveReport(
+            status=status,
+            message=message,
+            iterations=int(outcome.iterations),
+            objective=float(found.objective),
+            primal_residual=float(found.primal),
+            dual_residual=float(found.dual),
+            build_time=build_time,
+            solve_time=solve_time,
         )
 
     def _min_max(
@@ -340,9 +345,7 @@ class StaticOptimization:
             )
         return matrix, torque
 
-    def _verdict(
-        self, outcome: Outcome, at_upper: NDArray[np.bool_]
-    ) -> tuple[SolveStatus, str]:
+    def _verdict(self, outcome: Outcome) -> tuple[SolveStatus, str]:
         """Say what happened, naming coordinates and muscles."""
         if not outcome.converged:
             j = int(np.abs(outcome.residual).argmax())
@@ -350,10 +353,10 @@ class StaticOptimization:
                 f'static optimisation not converged: {self.coordinate_names[j]} is off by '
                 f'{outcome.residual[j]:.3g} N m'
             )
+        full = np.flatnonzero(outcome.activation >= self.actuators.upper - AT_BOUND)
         bound = ''
-        if at_upper.any():
-            full = [self.muscle_names[i] for i in np.flatnonzero(at_upper)]
-            bound = f'at full activation: {_some(full)}'
+        if full.size:
+            bound = f'at full activation: {_some([self.muscle_names[i] for i in full])}'
         if outcome.weak.any():
             reserve = outcome.reserve
             order = sorted(np.flatnonzero(outcome.weak), key=lambda j: -abs(reserve[j]))

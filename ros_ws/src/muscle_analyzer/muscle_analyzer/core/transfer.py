@@ -19,22 +19,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from human_model.compiled import body_motion
-from human_model.frames import ROS_FROM_OPENSIM, matrix_from_quaternion, rotation_to_opensim
+from human_model.frames import matrix_from_quaternion
 from human_model.motion import FRAMES, POINTS, BodyMotion
 from human_model.skeleton import Skeleton
-from human_model.tree import TreeArrays
 from muscle_analyzer.core.body_points import upright_coordinates
 from muscle_analyzer.core.exceptions import TransferError
-from muscle_analyzer.core.kinematics import forward_kinematics
-from muscle_analyzer.core.pose_fit import Rates, Targets, fit_pose, map_rates, misfit
+from muscle_analyzer.core.pose_fit import Targets
 from muscle_analyzer.core.subject_model import SubjectModel
+from muscle_analyzer.core.transfer_frames import (
+    TransferredFrames,
+    TransferSetup,
+    transfer_frames,
+)
 
 Array = NDArray[np.float64]
 
@@ -52,27 +52,6 @@ TOLERANCE = 1e-5
 MAX_ITERATIONS = 200
 # Points of a motion must be those of its skeleton, or its rates would belong to another motion.
 SAME_POINT = 1e-3
-
-
-class SkeletonState(NamedTuple):
-    """A skeleton at its coordinates, REP-103 axes; velocities and accelerations of its points.
-
-    Attributes
-    ----------
-    point, velocity, acceleration : (n_p, 3) arrays
-        m, m/s, m/s^2.
-    rotation : (n_f, 3, 3) array
-        World <- frame.
-    omega, alpha : (n_f, 3) arrays
-        Angular, rad/s and rad/s^2.
-    """
-
-    point: Array
-    velocity: Array
-    acceleration: Array
-    rotation: Array
-    omega: Array
-    alpha: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,6 +82,51 @@ class TransferredPose:
     at_limit: tuple[str, ...]
 
 
+@dataclass(frozen=True, eq=False)
+class TransferredMotion:
+    """A block of n samples on the musculoskeletal model; arrays as in `TransferredPose`.
+
+    Attributes
+    ----------
+    q, qd, qdd : (n, n_q) arrays
+    point_distance : (n, n_p) array
+    frame_angle : (n, n_f) array
+    iterations : (n,) int array
+    converged : (n,) bool array
+    at_limit : (n, n_q) bool array
+        Whether a coordinate is at a limit of its range.
+    names : tuple of str, n_q
+        Of the coordinates.
+    """
+
+    q: Array
+    qd: Array
+    qdd: Array
+    point_distance: Array
+    frame_angle: Array
+    iterations: NDArray[np.int64]
+    converged: NDArray[np.bool_]
+    at_limit: NDArray[np.bool_]
+    names: tuple[str, ...]
+
+    def limits(self, k: int) -> tuple[str, ...]:
+        """Return the names of the coordinates at a limit in sample `k`."""
+        return tuple(self.names[c] for c in np.flatnonzero(self.at_limit[k]))
+
+    def pose(self, k: int) -> TransferredPose:
+        """Return sample `k`."""
+        return TransferredPose(
+            q=self.q[k],
+            qd=self.qd[k],
+            qdd=self.qdd[k],
+            point_distance=self.point_distance[k],
+            frame_angle=self.frame_angle[k],
+            iterations=int(self.iterations[k]),
+            converged=bool(self.converged[k]),
+            at_limit=self.limits(k),
+        )
+
+
 class MotionTransfer:
     """Fits a subject's musculoskeletal model to the motion of a skeleton, sample after sample.
 
@@ -114,8 +138,8 @@ class MotionTransfer:
 
     Raises
     ------
-    TransferError
-        If the model lacks a coordinate that is held.
+    UnknownNameError
+        If the model lacks a coordinate of the pelvis.
     """
 
     def __init__(self, subject: SubjectModel, skeleton: Skeleton) -> None:
@@ -123,31 +147,53 @@ class MotionTransfer:
         self.skeleton = skeleton
         model, points = subject.multibody, subject.points
         names = model.coordinate_names
-        self._fitted = np.array([name not in HELD_COORDINATES for name in names])
+        fitted = np.array([name not in HELD_COORDINATES for name in names])
         clamped = {
             c.name: c.clamped for joint in model.source.joints for c in joint.coordinates
         }
-        bounded = self._fitted & np.array([clamped[name] for name in names])
-        self._lower = np.where(bounded, model.lower, -np.inf)
-        self._upper = np.where(bounded, model.upper, np.inf)
+        bounded = fitted & np.array([clamped[name] for name in names])
         which_points = _positions(points.names, POINTS)
-        self._segments = skeleton.point_segment[which_points]
-        self._locals = np.ascontiguousarray(skeleton.point_local[which_points])
-        self._frame_segments = skeleton.frame_segment[_positions(points.frame_names, FRAMES)]
-        self._sagittal = 'pelvis_rotation' not in skeleton.coordinates
-        self._pelvis = points.names.index('pelvis')
-        self._pelvis_frame = points.frame_names.index('pelvis')
         self._columns = cache(_positions)
-        self._upright_q = upright_coordinates(model)
-        self._reference_weight = np.array(
-            [0.0 if name.startswith(UNREFERENCED) else 1.0 / REFERENCE_SIGMA for name in names]
+        self._setup = TransferSetup(
+            tree=model.tree,
+            skeleton=skeleton.tree,
+            segment=skeleton.point_segment[which_points],
+            local=np.ascontiguousarray(skeleton.point_local[which_points]),
+            frame_segment=skeleton.frame_segment[_positions(points.frame_names, FRAMES)],
+            targets=Targets(
+                point_body=points.body,
+                point_local=points.local,
+                point=np.empty((len(points.names), 3)),
+                point_weight=1.0 / points.sigma,
+                frame_body=points.frame_body,
+                frame=np.empty((len(points.frame_names), 3, 3)),
+                frame_weight=1.0 / points.frame_sigma,
+                reference=np.empty(len(names)),
+                reference_weight=np.array(
+                    [0.0 if n.startswith(UNREFERENCED) else 1.0 / REFERENCE_SIGMA for n in names]
+                ),
+            ),
+            upright=np.ascontiguousarray(points.frame_upright),
+            upright_q=upright_coordinates(model),
+            same=_same_coordinates(names, skeleton.coordinates),
+            lower=np.where(bounded, model.lower, -np.inf),
+            upper=np.where(bounded, model.upper, np.inf),
+            fitted=fitted,
+            held=model.default,
+            pelvis_coordinates=np.array(
+                [model.coordinate_index(name) for name in PELVIS_COORDINATES], np.int64
+            ),
+            pelvis=points.names.index('pelvis'),
+            pelvis_frame=points.frame_names.index('pelvis'),
+            sagittal='pelvis_rotation' not in skeleton.coordinates,
+            tolerance=TOLERANCE,
+            max_iterations=MAX_ITERATIONS,
         )
-        self._same = _same_coordinates(names, skeleton.coordinates)
-        self._start: Array | None = None
+        self._start = np.full(len(names), np.nan)
 
     def reset(self) -> None:
         """Forget the last pose; the next fit starts from the skeleton's coordinates."""
-        self._start = None
+        self._start = np.full_like(self._start, np.nan)
 
     def step(self, motion: BodyMotion, sample: int = 0) -> TransferredPose:
         """Take over one sample; the fit starts from the sample before.
@@ -157,135 +203,53 @@ class MotionTransfer:
         TransferError
             If the motion is of another skeleton, or its points are not those of this subject.
         """
+        return self._taken_over(motion, slice(sample, sample + 1)).pose(0)
+
+    def block(self, motion: BodyMotion) -> TransferredMotion:
+        """Take over all samples, one after the other; see `step`."""
+        return self._taken_over(motion, slice(None))
+
+    def _taken_over(self, motion: BodyMotion, samples: slice) -> TransferredMotion:
         if motion.coordinates != self.skeleton.coordinates:
             raise TransferError(
                 f'motion of skeleton {motion.skeleton!r} does not have the coordinates of '
                 f'{self.skeleton.name!r}'
             )
         points = self.subject.points
-        place = motion.points[sample, self._columns(points.names, motion.point_names)]
-        frames = matrix_from_quaternion(
-            motion.frames[sample, self._columns(points.frame_names, motion.frame_names)]
-        )
-        own = _skeleton_state(
-            self.skeleton.tree,
-            motion.position[sample],
-            motion.velocity[sample],
-            motion.acceleration[sample],
-            self._segments,
-            self._locals,
-            self._frame_segments,
-        )
-        turn = self._turn(own, frames)
-        self._check_points(motion, sample, own, turn, place)
-        targets = self._targets(motion, sample, place, frames)
-        tree = self.subject.multibody.tree
-        start = self._first(targets) if self._start is None else self._start
-        fit = fit_pose(
-            tree, targets, start, self._lower, self._upper, self._fitted, TOLERANCE, MAX_ITERATIONS
-        )
-        at_limit = (fit.q <= self._lower) | (fit.q >= self._upper)
-        axes = turn.T @ ROS_FROM_OPENSIM
-        qd, qdd = map_rates(
-            tree,
-            targets,
-            fit.q,
-            self._fitted & ~at_limit,
-            Rates(
-                own.velocity @ axes,
-                own.omega @ axes,
-                self._referenced(motion.velocity[sample]),
-            ),
-            Rates(
-                own.acceleration @ axes,
-                own.alpha @ axes,
-                self._referenced(motion.acceleration[sample]),
-            ),
-        )
-        self._start = fit.q if fit.converged else None
-        distance, angle = self._remaining(targets, fit.q)
         names = self.subject.multibody.coordinate_names
-        return TransferredPose(
-            q=fit.q,
+        place = motion.points[samples, self._columns(points.names, motion.point_names)]
+        frames = matrix_from_quaternion(
+            motion.frames[samples, self._columns(points.frame_names, motion.frame_names)]
+        )
+        n = len(place)
+        q, qd, qdd = np.empty((3, n, len(names)))
+        out = TransferredFrames(
+            q=q,
             qd=qd,
             qdd=qdd,
-            point_distance=distance,
-            frame_angle=angle,
-            iterations=fit.iterations,
-            converged=fit.converged,
-            at_limit=tuple(names[k] for k in np.flatnonzero(at_limit)),
+            point_distance=np.empty((n, len(points.names))),
+            frame_angle=np.empty((n, len(points.frame_names))),
+            iterations=np.empty(n, np.int64),
+            converged=np.empty(n, np.bool_),
+            at_limit=np.empty((n, len(names)), np.bool_),
+            off=np.empty((n, len(points.names))),
         )
-
-    def _turn(self, own: SkeletonState, frames: Array) -> Array:
-        """Return the turn (3, 3) about the vertical that leads from the coordinates to the motion.
-
-        A 3D skeleton's coordinates hold its heading: nothing is left to turn.
-        """
-        if not self._sagittal:
-            return np.eye(3)
-        between = frames[self._pelvis_frame] @ own.rotation[self._pelvis_frame].T
-        heading = np.arctan2(between[1, 0] - between[0, 1], between[0, 0] + between[1, 1])
-        c, s = np.cos(heading), np.sin(heading)
-        return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-
-    def _targets(self, motion: BodyMotion, sample: int, place: Array, frames: Array) -> Targets:
-        points = self.subject.points
-        return Targets(
-            points.body,
-            points.local,
-            place @ ROS_FROM_OPENSIM,
-            1.0 / points.sigma,
-            points.frame_body,
-            rotation_to_opensim(frames) @ points.frame_upright,
-            1.0 / points.frame_sigma,
-            self._upright_q + self._referenced(motion.position[sample]),
-            self._reference_weight,
+        values = (
+            np.ascontiguousarray(motion.position[samples]),
+            np.ascontiguousarray(motion.velocity[samples]),
+            np.ascontiguousarray(motion.acceleration[samples]),
         )
-
-    def _referenced(self, values: Array) -> Array:
-        """Return the skeleton's values (n_q,) of the model's coordinates, 0 where it has none."""
-        return np.where(self._same >= 0, values[self._same], 0.0)
-
-    def _check_points(
-        self, motion: BodyMotion, sample: int, own: SkeletonState, turn: Array, place: Array
-    ) -> None:
-        off = own.point @ turn.T - place
-        if self._sagittal:
-            # Where in the laboratory the plane is; the height is a coordinate.
-            off[:, :2] -= off[self._pelvis, :2]
-        distance = np.linalg.norm(off, axis=1)
-        worst = int(np.argmax(distance))
-        if distance[worst] > SAME_POINT:
+        done = transfer_frames(
+            self._setup, values, np.ascontiguousarray(place), frames, self._start, SAME_POINT, out
+        )
+        if done < n:
+            worst = int(np.argmax(out.off[done]))
             raise TransferError(
-                f'motion at {motion.time[sample]:.3f} s: '
-                f'point {self.subject.points.names[worst]!r} is {distance[worst]:.4f} m '
+                f'motion at {motion.time[samples][done]:.3f} s: '
+                f'point {points.names[worst]!r} is {out.off[done, worst]:.4f} m '
                 'away from the skeleton of the subject'
             )
-
-    def _first(self, targets: Targets) -> Array:
-        """Return a start without a sample before: the target pelvis, the skeleton's limbs."""
-        model = self.subject.multibody
-        start = np.where(self._fitted, self._upright_q, model.default)
-        start = np.where(self._reference_weight > 0.0, targets.reference, start)
-        place = targets.point[self._pelvis] - self.subject.points.local[self._pelvis]
-        # Turns about z, x and y one after the other, each in the frame that the last one left.
-        frame = targets.frame[self._pelvis_frame]
-        turns = (
-            np.arctan2(-frame[0, 1], frame[1, 1]),
-            np.arcsin(np.clip(frame[2, 1], -1.0, 1.0)),
-            np.arctan2(-frame[2, 0], frame[2, 2]),
-        )
-        for name, value in zip(PELVIS_COORDINATES, (*place, *turns), strict=True):
-            start[model.coordinate_index(name)] = value
-        return np.asarray(np.clip(start, self._lower, self._upper))
-
-    def _remaining(self, targets: Targets, q: Array) -> tuple[Array, Array]:
-        zero = np.zeros(q.size)
-        state = forward_kinematics(self.subject.multibody.tree, q, zero, zero)
-        off = misfit(targets, state).reshape(-1, 3)
-        size = np.linalg.norm(off, axis=1)
-        n_p = targets.point_weight.size
-        return size[:n_p] / targets.point_weight, size[n_p:] / targets.frame_weight
+        return TransferredMotion(*out[:-1], names)
 
 
 def _same_coordinates(names: tuple[str, ...], skeleton: tuple[str, ...]) -> NDArray[np.int64]:
@@ -303,38 +267,3 @@ def _positions(wanted: tuple[str, ...], names: tuple[str, ...]) -> NDArray[np.in
     if missing := [name for name in wanted if name not in names]:
         raise TransferError(f'point or frame {missing[0]!r} is not among those of the motion')
     return np.array([names.index(name) for name in wanted], dtype=np.int64)
-
-
-@njit(cache=True)
-def _skeleton_state(
-    tree: TreeArrays,
-    q: Array,
-    qd: Array,
-    qdd: Array,
-    segment: NDArray[np.int64],
-    local: Array,
-    frame_segment: NDArray[np.int64],
-) -> SkeletonState:
-    rotation, origin, _, omega, alpha, velocity, acceleration = body_motion(tree, q, qd, qdd)
-    n_p = segment.size
-    n_f = frame_segment.size
-    x = np.empty((n_p, 3))
-    v = np.empty((n_p, 3))
-    a = np.empty((n_p, 3))
-    r = np.empty((n_f, 3, 3))
-    w = np.empty((n_f, 3))
-    al = np.empty((n_f, 3))
-    for i in range(n_p):
-        b = tree.segment_body[segment[i]]
-        arm = rotation[b] @ (tree.segment_offset[segment[i]] + local[i])
-        x[i] = origin[b] + arm
-        v[i] = velocity[b] + np.cross(omega[b], arm)
-        a[i] = (
-            acceleration[b] + np.cross(alpha[b], arm) + np.cross(omega[b], np.cross(omega[b], arm))
-        )
-    for i in range(n_f):
-        b = tree.segment_body[frame_segment[i]]
-        r[i] = rotation[b]
-        w[i] = omega[b]
-        al[i] = alpha[b]
-    return SkeletonState(x, v, a, r, w, al)

@@ -42,7 +42,7 @@ class Problem:
 
 def tracker_problem(status: int) -> Problem:
     """Give what a sample's tracker status means for its analysis; only 0 is usable."""
-    if status == SolveStatus.OK:
+    if status == 0:
         return Problem()
     known = status in SolveStatus.__members__.values()
     message = f'motion tracker: {SolveStatus(status).name if known else f"status {status}"}'
@@ -65,6 +65,8 @@ def overall(report: SolveReport, problems: Sequence[Problem], notes: Sequence[st
         What else is to be known.
     """
     found = [problem for problem in problems if problem.status is not SolveStatus.OK]
+    if not found and not notes:
+        return report
     texts = [problem.message for problem in found] + [report.message, *notes]
     return replace(
         report,

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from human_model.frames import to_opensim
 from human_model.motion import SIDES, BodyMotion
-from muscle_analyzer.core.analysis_sample import FEET, HANDS
+from muscle_analyzer.core.block_solver import FEET, HANDS
 from muscle_analyzer.core.exceptions import InputArrayError, TransferError
 from muscle_analyzer.core.inverse_dynamics import add_force
 from muscle_analyzer.core.kinematics import coordinate_state
@@ -125,19 +125,20 @@ def motion_on_model(transfer: MotionTransfer, motion: BodyMotion, start: float) 
         If the generic model's file was damaged in the meantime.
     """
     transfer.reset()
-    poses = [transfer.step(motion, k) for k in range(len(motion))]
-    for time, pose in zip(motion.time, poses, strict=True):
-        if not pose.converged:
-            raise TransferError(
-                f'sample at {time - start:.3f} s: not converged in {pose.iterations} iterations'
-            )
+    poses = transfer.block(motion)
+    if not poses.converged.all():
+        k = int(np.argmin(poses.converged))
+        raise TransferError(
+            f'sample at {motion.time[k] - start:.3f} s: not converged in {poses.iterations[k]} '
+            'iterations'
+        )
     model = transfer.subject.multibody
     return MotionOnModel(
         model=model,
         time=np.round(motion.time - start, TIME_DECIMALS),
-        q=np.array([pose.q for pose in poses]),
-        qd=np.array([pose.qd for pose in poses]),
-        qdd=np.array([pose.qdd for pose in poses]),
+        q=poses.q,
+        qd=poses.qd,
+        qdd=poses.qdd,
         forces=forces_of(motion),
         meshes=scaled_meshes(read_meshes(Path(model.source.source)), transfer.subject.factors),
     )
