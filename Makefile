@@ -44,7 +44,7 @@ lint: setup-dev ## ruff over everything
 typecheck: setup-dev ## mypy, strict, over the pure cores
 	@$(TOOL) mypy $(wildcard ros_ws/src/human_model/human_model ros_ws/src/*/*/core)
 
-bench: setup-dev ## speed and accuracy figures
+bench: reference-models ## speed and accuracy figures
 	@test -f benchmarks/run.py || { echo 'there is no benchmarks/run.py' >&2; exit 1; }
 	@$(CLEAN) $(PYTHON_BIN) benchmarks/run.py $(BENCH_ARGS)
 

@@ -174,9 +174,9 @@ def _accuracy(found: list[Referee]) -> dict[str, float]:
         'moment_arm_mm_p95': float(np.percentile(arms, 95)),
         'moment_arm_mm_max': float(arms.max()),
         'so_cost_over_opensim_max': max((ours - theirs) / theirs for ours, theirs in costs),
-        'l5s1_diff_percent': max(
+        'l5s1_diff_percent': max(float(one.l5_s1_percent.max()) for one in found),
+        'l5s1_diff_percent_of_peak': max(
             c.difference('force on L5-S1').percent_of_peak for c in comparisons
         ),
-        'l5s1_diff_percent_of_instant': max(float(one.l5_s1_percent.max()) for one in found),
         'l5s1_equal_forces_N': max(equal),
     }

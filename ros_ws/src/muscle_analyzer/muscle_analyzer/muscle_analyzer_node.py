@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import math
+import time
 from collections import OrderedDict, deque
 from pathlib import Path
 from typing import Final
@@ -42,8 +43,11 @@ from muscle_analyzer.lift_queue import LiftQueue, WaitingLift
 WAITING_LIFTS: Final = 100
 """Lifts kept until their person is known and the node is active."""
 
-LIFT_STEP: Final = 0.001
-"""Time [s] that a whole lift is worked on before live samples have their turn, and the pause."""
+LIFT_STEP: Final = 0.004
+"""Time [s] that whole lifts are worked on right after a live sample: over before the next one."""
+
+QUIET: Final = 0.02
+"""Time [s] without a live sample after which whole lifts are worked on all the time."""
 
 
 class MuscleAnalyzerNode(PipelineNode):
@@ -77,6 +81,7 @@ class MuscleAnalyzerNode(PipelineNode):
         self._queue = LiftQueue(
             self.analyzer, self._lift_done, self._lift_failed, self.INPUT_ERRORS
         )
+        self._last_live = -math.inf
         self._turn = self.create_timer(
             LIFT_STEP, self._work, clock=Clock(clock_type=ClockType.STEADY_TIME), autostart=False
         )
@@ -142,6 +147,8 @@ class MuscleAnalyzerNode(PipelineNode):
         self.counts['live samples with good L5-S1 load'] += analysis.good_spine_samples
         for reaction in conversions.reactions_to_msg(analysis):
             self._reaction.publish(reaction)
+        self._queue.work(LIFT_STEP)
+        self._last_live = time.monotonic()
 
     def _on_measured_lift(self, message: MeasuredLift) -> None:
         self._wait('measured', message)
@@ -177,7 +184,8 @@ class MuscleAnalyzerNode(PipelineNode):
             self._turn.reset()
 
     def _work(self) -> None:
-        self._queue.work(LIFT_STEP)
+        if time.monotonic() - self._last_live > QUIET:
+            self._queue.work(LIFT_STEP)
         if not self._queue:
             self._turn.cancel()
 

@@ -167,7 +167,7 @@ class TorqueLimits:
             [of.bound(row.coordinate, side) for of, row in zip(strength, self.rows, strict=True)]
             for side in sides
         ]
-        self._bounds = [_Surfaces.of(column) for column in bounds]
+        self._bounds = _Surfaces.of(bounds)
         # What the sagittal skeleton has no coordinate for is held at zero in it.
         self._column = np.array(
             [
@@ -201,7 +201,7 @@ class TorqueLimits:
             np.where(self._column >= 0, values[:, self._column], 0.0)
             for values in (motion.position, motion.velocity)
         )
-        lower, upper = (surfaces(angle, speed) for surfaces in self._bounds)
+        lower, upper = self._bounds(angle, speed)
         return JointTorques(
             analysis.lift_id,
             analysis.source,
@@ -236,7 +236,10 @@ def _names(row: TorqueRow) -> tuple[str, str]:
 
 @dataclass(frozen=True, eq=False)
 class _Surfaces:
-    """Strength surfaces of n_j joints as arrays, so that one evaluation serves all joints."""
+    """Strength surfaces of n_j joints, lower and upper, so that one evaluation serves them all.
+
+    Arrays (2, 1, n_j); the coefficients have their number before that.
+    """
 
     coefficients: Array
     magnitude: Array
@@ -244,16 +247,17 @@ class _Surfaces:
     speed_factor: Array
 
     @classmethod
-    def of(cls, bounds: list[StrengthBound]) -> _Surfaces:
+    def of(cls, bounds: list[list[StrengthBound]]) -> _Surfaces:
+        def gathered(name: str) -> Array:
+            return np.array([[getattr(bound, name) for bound in side] for side in bounds])
+
         return cls(
-            np.array([bound.coefficients for bound in bounds]).T,
-            np.array([bound.magnitude for bound in bounds]),
-            np.array([bound.angle_factor for bound in bounds]),
-            np.array([bound.speed_factor for bound in bounds]),
+            np.moveaxis(gathered('coefficients'), -1, 0)[:, :, None],
+            *(gathered(name)[:, None] for name in ('magnitude', 'angle_factor', 'speed_factor')),
         )
 
     def __call__(self, angle: Array, speed: Array) -> Array:
-        """Give the limits (n, n_j) [N m] at angles [rad] and speeds [rad/s] of the coordinates."""
+        """Give limits (2, n, n_j) [N m] at angles [rad] and speeds [rad/s] of the coordinates."""
         return np.asarray(
             self.magnitude
             * surface(self.coefficients, self.angle_factor * angle, self.speed_factor * speed)

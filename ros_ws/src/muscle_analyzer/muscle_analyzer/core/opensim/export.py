@@ -42,11 +42,17 @@ class ExportOptions:
         Whether muscle force depends on the fibre's length and velocity.
     samples_per_solution : int
         One sample in so many is solved by the set-ups for the whole motion.
+    tolerance : float
+        At which its optimiser stops.
+    iterations : int
+        After which that gives up.
     """
 
     exponent: float = 2.0
     physiology: bool = False
     samples_per_solution: int = SAMPLES_PER_SOLUTION
+    tolerance: float = files.OPTIMIZER_TOLERANCE
+    iterations: int = files.OPTIMIZER_ITERATIONS
 
 
 def export_motion(
@@ -86,8 +92,9 @@ def export_motion(
     files.write_reserves(folder / files.RESERVES, read_reserves(motion.model.coordinate_names))
     files.write_inverse_dynamics(folder / files.INVERSE_DYNAMICS, start, end)
     files.write_static_optimization(
-        folder / files.STATIC_OPTIMIZATION, start, end, step, options.exponent, options.physiology
-    )
+        folder / files.STATIC_OPTIMIZATION, start, end, step, options.exponent,
+        options.physiology, options.tolerance, options.iterations,
+    )  # fmt: skip
     files.write_joint_reaction(folder / files.JOINT_REACTION, start, end, step)
     names = (
         files.MODEL, files.COORDINATES, files.LOADS_DATA, files.LOADS, files.RESERVES,

@@ -127,7 +127,14 @@ def write_inverse_dynamics(path: Path, start: float, end: float) -> None:
 
 
 def write_static_optimization(
-    path: Path, start: float, end: float, step: int, exponent: float, physiology: bool
+    path: Path,
+    start: float,
+    end: float,
+    step: int,
+    exponent: float,
+    physiology: bool,
+    tolerance: float = OPTIMIZER_TOLERANCE,
+    iterations: int = OPTIMIZER_ITERATIONS,
 ) -> None:
     """Write the set-up of the static optimisation.
 
@@ -142,14 +149,18 @@ def write_static_optimization(
         Of the activations in the cost.
     physiology : bool
         Whether force depends on the fibre's length and velocity.
+    tolerance : float
+        At which the optimiser stops.
+    iterations : int
+        After which it gives up.
     """
     analysis = named('StaticOptimization', 'StaticOptimization')
     _add_times(analysis, step)
     add_flag(analysis, 'use_model_force_set', True)
     add_numbers(analysis, 'activation_exponent', exponent)
     add_flag(analysis, 'use_muscle_physiology', physiology)
-    add_numbers(analysis, 'optimizer_convergence_criterion', OPTIMIZER_TOLERANCE)
-    add_numbers(analysis, 'optimizer_max_iterations', OPTIMIZER_ITERATIONS)
+    add_numbers(analysis, 'optimizer_convergence_criterion', tolerance)
+    add_numbers(analysis, 'optimizer_max_iterations', iterations)
     write_document(path, _analyze_tool(start, end, analysis))
 
 
