@@ -12,7 +12,9 @@ small multiple of their squares decides among them::
 The dual Newton method of the other criteria does not fit, as hardly any muscle is strictly between
 its bounds.  This is a predictor-corrector method for convex quadratic programmes (Mehrotra 1992,
 SIAM J Optim 2:575): activations and slacks are eliminated, so that each step factors one matrix
-with a row per coordinate, and b is left as a single unknown beside it.
+with a row per coordinate, and b is left as a single unknown beside it.  Its solution stays off
+the bounds by the root of what is left of the complementarity; from near it an active set method
+finds the bounds that are met, and with them the exact solution.  Only that counts as converged.
 """
 
 from typing import NamedTuple
@@ -22,16 +24,20 @@ from numba import njit
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 
 #: e of the header: the largest activation exceeds the smallest possible one by at most e times
 #: the sum of squares that this saves.
 SQUARES_SHARE = 1e-3
-#: Mean product of multiplier and slack of a solution.
-COMPLEMENTARITY = 1e-13
-#: The same from which on the bounds that are met are tried for the exact solution.
-NEARLY = 1e-7
-#: Relative stationarity of a solution.
-STATIONARITY = 1e-9
+#: Mean product of multiplier and slack from which on the bounds that are met are tried for the
+#: exact solution, and the one beyond which that is given up.
+NEARLY, COMPLEMENTARITY = 1e-7, 1e-13
+#: By so much an activation may pass a bound that is not taken for met.
+OVERSHOOT = 1e-9
+#: Size of a multiplier, as a share of the largest pull, that is as good as none.
+ROUNDING = 1e-12
+#: Limit of rounds in which the bounds that are met are put right.
+POLISHES = 12
 #: Share of the way to the boundary that a step may go.
 TO_BOUNDARY = 0.995
 
@@ -127,63 +133,104 @@ def _mean_product(lower: Array, upper: float, point: _Point) -> float:
 
 
 @njit(cache=True, error_model='numpy')
+def _on_bounds(
+    matrix: Array, curvature: Array, reserve: Array, torque: Array, lower: Array, fixed: float,
+    low: Flags, high: Flags,
+) -> tuple[Array, Array, Array]:
+    """
+    Solve with the bounds that are met given, and b too unless `fixed` is NaN.
+
+    Gives the activations, (y, b) and what is unbalanced.
+    """  # fmt: skip
+    free = np.isnan(fixed)
+    n = reserve.size
+    softness = np.where(low | high, 0.0, 1.0 / curvature)
+    at_low, at_high = np.where(low, lower, 0.0), high.astype(np.float64)
+    system, right = np.zeros((n + 1, n + 1)), np.zeros(n + 1)
+    system[:n, :n] = (matrix * softness) @ matrix.T
+    system[:n, n] = matrix @ at_high
+    system[n, n] = -(curvature @ at_high)
+    right[:n] = torque - matrix @ at_low
+    right[n] = 1.0 if free else fixed
+    for j in range(n):
+        system[j, j] += 0.5 * reserve[j] * reserve[j]
+    if free:
+        system[n, :n] = system[:n, n]
+    else:
+        system[n, n] = 1.0
+    solved, rest = np.zeros(n + 1), right.copy()
+    found, residual = at_low.copy(), right[:n].copy()
+    # Later rounds take off what the first one lost by rounding.  They add to the activations: to
+    # divide the whole pull by the small curvature again would lose it anew.
+    for _ in range(3):
+        step = np.linalg.solve(system, rest)
+        solved += step
+        pull = matrix.T @ np.ascontiguousarray(step[:n])
+        found += softness * pull + step[n] * at_high
+        residual = torque - matrix @ found - 0.5 * reserve * reserve * solved[:n]
+        rest[:n], rest[n] = residual, 0.0
+    return found, solved, residual
+
+
+@njit(cache=True, error_model='numpy')
 def _polish(
     matrix: Array, curvature: Array, reserve: Array, torque: Array, lower: Array, upper: float,
     tolerance: float, point: _Point,
 ) -> bool:
     """
-    Solve for the activations exactly, the bounds that are met being known; changes the iterate.
+    Solve for the activations exactly, from the bounds that are met; changes the iterate.
 
     An interior point stays off its bounds by the root of the complementarity where multipliers are
-    small.  Returns False, and changes nothing, if the bounds found are not those of a solution.
+    small, so that some bounds are taken for met that are not, or the other way round.  These are
+    put right one round after the other, as a solution with wrong bounds shows which they are
+    (primal-dual active set method, Hintermueller, Ito and Kunisch 2002, SIAM J Optim 13:865).
+    Returns False, and changes nothing, if that does not come to an end.
     """  # fmt: skip
     a, z, v, y, scalar = point
     b, t = scalar
     # Without its bound a muscle would go on by its multiplier over its curvature.
-    low, high, full = z > curvature * (a - lower), v > curvature * (b - a), t > upper - b
-    n = reserve.size
-    system, right = np.zeros((n + 1, n + 1)), np.zeros(n + 1)
-    right[:n] = torque
-    right[n] = upper if full else 1.0
-    for j in range(n):
-        system[j, j] = 0.5 * reserve[j] * reserve[j]
-    for i in range(a.size):
-        column = matrix[:, i]
-        if low[i]:
-            right[:n] -= column * lower[i]
-        elif high[i]:
-            system[:n, n] += column
-            system[n, n] -= curvature[i]
-        else:
-            system[:n, :n] += np.outer(column, column) / curvature[i]
-    if full:
-        system[n, n] = 1.0
-    else:
-        system[n, :n] = system[:n, n]
-    solved = np.zeros(n + 1)
-    rest = right.copy()
-    found, residual = a.copy(), right[:n].copy()
-    # The second round takes off what the first one lost by rounding.
-    for _ in range(2):
-        solved += np.linalg.solve(system, rest)
-        pull = matrix.T @ np.ascontiguousarray(solved[:n])
+    low = z > curvature * (a - lower)
+    high = (v > curvature * (b - a)) & ~low
+    n, floor = reserve.size, lower.max()
+    fixed = upper if t > upper - b else np.nan
+    for _ in range(POLISHES):
+        if np.isnan(fixed) and not high.any():
+            # Nothing presses on b: it falls to the largest of the lower bounds.
+            fixed = floor
+        found, solved, residual = _on_bounds(
+            matrix, curvature, reserve, torque, lower, fixed, low, high
+        )
         largest = solved[n]
-        found = np.where(low, lower, np.where(high, largest, pull / curvature))
-        residual = torque - matrix @ found - 0.5 * reserve * reserve * solved[:n]
-        rest[:n], rest[n] = residual, 0.0
-    force = pull - curvature * found
-    slack = STATIONARITY * (1.0 + np.abs(pull).max())
-    right_sign = ((~low | (force <= slack)) & (~high | (force >= -slack))).all()
-    inside = ((found >= lower - STATIONARITY) & (found <= largest + STATIONARITY)).all()
-    if not (right_sign and inside and largest <= upper + STATIONARITY):
-        return False
-    if not np.abs(residual).max() <= tolerance:
-        return False
-    found = np.minimum(np.maximum(found, lower), largest)
-    a[:] = found
-    y[:] = solved[:n]
-    scalar[0] = largest
-    return True
+        pull = matrix.T @ np.ascontiguousarray(solved[:n])
+        force = pull - curvature * found
+        slack = ROUNDING * (1.0 + np.abs(pull).max())
+        free = ~low & ~high
+        to_low = free & (found < lower - OVERSHOOT)
+        to_high = free & (found > largest + OVERSHOOT)
+        freed = (low & (force > slack)) | (high & (force < -slack))
+        # What the muscles at b press on it, less what a unit of b costs.
+        pressed = np.where(high, force, 0.0).sum() - 1.0
+        wanted = fixed
+        lifted = fixed == floor and pressed > slack
+        if lifted or (fixed == upper and pressed < -slack):
+            wanted = np.nan
+        elif np.isnan(fixed) and largest > upper + OVERSHOOT:
+            wanted = upper
+        elif np.isnan(fixed) and largest < floor - OVERSHOOT:
+            wanted = floor
+        same = wanted == fixed or (np.isnan(wanted) and np.isnan(fixed))
+        if same and not (to_low.any() or to_high.any() or freed.any()):
+            if not np.abs(residual).max() <= tolerance:
+                return False
+            largest = min(max(largest, floor), upper)
+            a[:] = np.minimum(np.maximum(found, lower), largest)
+            y[:] = solved[:n]
+            scalar[0] = largest
+            return True
+        low = (low & ~freed) | to_low
+        high = (high & ~freed) | to_high
+        fixed = wanted
+    return False
 
 
 @njit(cache=True, error_model='numpy')
@@ -227,24 +274,15 @@ def solve_min_max(
         y = point.y
         residual = torque - matrix @ point.a - 0.5 * reserve * reserve * y
         product = _mean_product(lower, top, point)
-        stationarity = curvature * point.a - matrix.T @ y - point.z + point.v
-        worst = np.abs(stationarity).max() / (1.0 + np.abs(y).max())
-        at_end = abs(1.0 - point.v.sum() + point.scalar[1]) / (1.0 + point.scalar[1])
         share = product / (1.0 + point.scalar[1])
         if share <= NEARLY and _polish(
             matrix, curvature, reserve, torque, lower, top, tolerance, point
         ):
             residual = torque - matrix @ point.a - 0.5 * reserve * reserve * point.y
             break
-        if (
-            share <= COMPLEMENTARITY
-            and np.abs(residual).max() <= tolerance
-            and max(worst, at_end) <= STATIONARITY
-        ):
-            break
-        # Slacks that round to nothing end the method without a solution.
+        # Without the exact solution it is none.  Slacks that round to nothing end the method.
         slack = min((point.a - lower).min(), (point.scalar[0] - point.a).min())
-        lost = min(slack, top - point.scalar[0]) <= 0.0
+        lost = min(slack, top - point.scalar[0]) <= 0.0 or share <= COMPLEMENTARITY
         if lost or iterations == max_iterations or not np.isfinite(product):
             multiplier[:] = y
             return point.a, residual, iterations, False, point.scalar[0]
