@@ -15,8 +15,9 @@ from lift_predictor.core.maximum_weight import LARGEST_WEIGHT, Normalisation, We
 from lift_predictor.core.nearest_lift import TIE_BREAK
 from lift_predictor.core.spatial.evaluation import evaluate, sample
 from lift_predictor.core.spatial.grid import WEIGHT_OFFSET
+from lift_predictor.core.spatial.multistart import Progress
 from lift_predictor.core.spatial.prediction import PredictedLift3D
-from lift_predictor.core.spatial.predictor import Progress, SpatialPredictor
+from lift_predictor.core.spatial.predictor import SpatialPredictor
 from lift_predictor.core.spatial.starts import SpatialStart
 from lift_predictor.core.spatial.task import SpatialTask
 
@@ -96,7 +97,9 @@ def maximum_weight(
         task, (weighting.effort / scale.effort, weighting.box / scale.log_weight)
     )
     near = SpatialStart('heaviest box', heaviest.control, heaviest.box_mass, heaviest.duration)
-    best = predictor.solve_task(weighted, (near, *far), progress)
+    best = predictor.solve_task(
+        weighted, (near, *far), progress, hops=predictor.options.hops
+    )
     return _result(predictor, weighted, weighting, best, scale)
 
 

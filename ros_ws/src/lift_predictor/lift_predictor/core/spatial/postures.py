@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -34,6 +35,15 @@ TURNED: Final = {'pelvis_turn': 0.4, 'lumbar_rotation': 0.35, 'thorax_rotation':
 """Parts of the way to the side that pelvis and spine take in the first guess (our choice)."""
 _LOW, _HIGH = 0.3, 1.1
 """Heights of the hands that belong to the two guesses [m]."""
+GUESSES: Final = 4
+"""Searches of each posture: there are several local minima."""
+SPREAD: Final = 0.35
+"""Standard deviation of the other guesses from the first (our choice) [rad]."""
+SEED: Final = 5
+SAME: Final = 0.05
+"""Postures that differ less are the same [rad]."""
+OTHER_BARRIER: Final = 1e-2
+"""First barrier parameter from the second best postures, to leave them if others are better."""
 
 
 class PostureFinder:
@@ -53,7 +63,9 @@ class PostureFinder:
             max_iterations=max_iterations, barrier=1e-2, tolerance=1e-6
         )
 
-    def starts(self, task: SpatialTask, grid: SpatialGrid) -> tuple[SpatialStart, ...]:
+    def starts(
+        self, task: SpatialTask, grid: SpatialGrid, guesses: int = GUESSES
+    ) -> tuple[SpatialStart, ...]:
         """Smooth steps between postures that hold the box at start and end.
 
         Parameters
@@ -62,6 +74,8 @@ class PostureFinder:
             Without a recording.
         grid : SpatialGrid
             Sizes of the programme.
+        guesses : int
+            Searches of each posture.
 
         Raises
         ------
@@ -70,15 +84,56 @@ class PostureFinder:
         """
         # Where the mass is open, the search begins light.
         mass = float(task.bounds.box_mass[0])
-        ends = [self.posture(task, end, mass) for end in (0, 1)]
-        guesses = [guess(task, end) for end in (0, 1)]
-        return (
-            through(task, grid, (ends[0], None, ends[1]), 'between postures', mass),
-            through(
-                task, grid, (ends[0], 0.5 * (guesses[0] + guesses[1]), ends[1]),
-                'through a middle', mass,
-            ),
-        )  # fmt: skip
+        ends = [self.postures(task, end, mass, guesses) for end in (0, 1)]
+        pairs = [
+            (one[1] + other[1], one[0], other[0]) for one in ends[0] for other in ends[1]
+        ]
+        best, *others = sorted(pairs, key=lambda pair: pair[0])
+        starts = [through(task, grid, (best[1], None, best[2]), 'between postures', mass)]
+        if others:
+            second = others[0][1], None, others[0][2]
+            other = through(task, grid, second, 'other postures', mass)
+            starts.append(replace(other, barrier=OTHER_BARRIER))
+        middle = 0.5 * (guess(task, 0) + guess(task, 1))
+        starts.append(through(task, grid, (best[1], middle, best[2]), 'through a middle', mass))
+        return tuple(starts)
+
+    def postures(
+        self, task: SpatialTask, end: int, mass: float, guesses: int
+    ) -> tuple[tuple[Array, float], ...]:
+        """Different postures (26,) at start (0) or end (1), and effort, the least effort first.
+
+        Parameters
+        ----------
+        task : SpatialTask
+            Where the box is.
+        end : int
+            0 or 1.
+        mass : float
+            Of the box [kg].
+        guesses : int
+            Searches, each from another guess.
+
+        Raises
+        ------
+        UnreachableError
+            No search found one; from the first guess.
+        """
+        rng, first = np.random.default_rng(SEED + end), guess(task, end)
+        found: list[tuple[Array, float]] = []
+        failed: UnreachableError | None = None
+        for number in range(guesses):
+            begin = first + (SPREAD * rng.normal(size=len(first)) if number else 0.0)
+            try:
+                posture, effort = self._search(task, end, mass, begin)
+            except UnreachableError as error:
+                failed = failed or error
+                continue
+            if all(np.abs(posture - other).max() > SAME for other, _ in found):
+                found.append((posture, effort))
+        if failed is not None and not found:
+            raise failed
+        return tuple(sorted(found, key=lambda one: one[1]))
 
     def posture(self, task: SpatialTask, end: int, mass: float) -> Array:
         """Posture (26,) at start (0) or end (1) that holds the box at rest with least effort.
@@ -88,6 +143,12 @@ class PostureFinder:
         UnreachableError
             There is none near the guess.
         """
+        return self._search(task, end, mass, guess(task, end))[0]
+
+    def _search(
+        self, task: SpatialTask, end: int, mass: float, begin: Array
+    ) -> tuple[Array, float]:
+        """Posture near a guess, and its effort."""
         row = 0 if end == 0 else -1
         hand = task.bounds.hand[end] / HAND_SCALE
         low, high = (
@@ -108,7 +169,7 @@ class PostureFinder:
             lambda index: (*SPLINED, 'mass of the box', 'duration')[index],
         )
         solution: Solution = solve(
-            programme, np.append(guess(task, end), still), self._options
+            programme, np.append(begin, still), self._options
         )
         if not solution.ok:
             worst = ', '.join(f'{name} ({value:.3g})' for name, value in solution.violated)
@@ -117,7 +178,7 @@ class PostureFinder:
                 f'the box cannot be held at {where} m at the {("start", "end")[end]} of the lift: '
                 f'{solution.status}; {worst or "no limit is violated"}'
             )
-        return solution.x[:N_SPLINED]
+        return solution.x[:N_SPLINED], solution.objective
 
 
 def guess(task: SpatialTask, end: int) -> Array:

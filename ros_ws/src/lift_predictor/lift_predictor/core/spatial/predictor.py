@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Final
 
@@ -35,6 +35,7 @@ from lift_predictor.core.spatial.lift_motion import (
     joint_torques,
     sample_times,
 )
+from lift_predictor.core.spatial.multistart import Progress, runs_from
 from lift_predictor.core.spatial.person import COEFFICIENT_SET, SpatialPerson
 from lift_predictor.core.spatial.prediction import PredictedLift3D, SpatialOptimum
 from lift_predictor.core.spatial.programme import (
@@ -53,8 +54,7 @@ from lift_predictor.core.spatial.task import (
 from lift_predictor.core.spatial.verify import SpatialVerification
 
 Array = NDArray[np.float64]
-Progress = Callable[[int, int, float], None]
-"""Told after each run: starts tried, starts in all, best objective so far (NaN: none yet)."""
+
 
 FOOT_TOLERANCE: Final = 1e-6
 """Distance of the feet from their place above which there are no data [m]."""
@@ -86,6 +86,8 @@ class SpatialOptions:
         How often the lift is solved again with a margin when the dense grid shows a violation.
     barrier : float
         First barrier parameter of the interior-point method: a larger one leaves the start.
+    hops : int
+        Runs from the best solution, displaced, in search of a better one.
     warm_barrier, warm_bound_push : float
         Barrier parameter and least distance from bounds after a warm start: found on lifts whose
         box changed by up to 1 kg and 4 cm; smaller barriers save steps for small changes only.
@@ -99,6 +101,7 @@ class SpatialOptions:
     time_limit: float = 30.0
     refinements: int = 5
     barrier: float = 1e-3
+    hops: int = 3
     warm_barrier: float = 1e-7
     warm_bound_push: float = 1e-3
 
@@ -212,7 +215,7 @@ class SpatialPredictor:
             duration = lift.end - lift.start
             return PredictedLift3D.failed(lift.lift_id, box.mass, duration, report), None
         starts = recorded_starts(task, self.grid)
-        prediction = self.solve_task(task, starts, progress, begin)
+        prediction = self.solve_task(task, starts, progress, begin, hops=self.options.hops)
         if not prediction.report.ok:
             if prediction.report.status not in HOPELESS:
                 return prediction, None
@@ -229,6 +232,7 @@ class SpatialPredictor:
         progress: Progress | None = None,
         begin: float | None = None,
         warm: Solution | None = None,
+        hops: int = 0,
     ) -> PredictedLift3D:
         """Solve a task from given starts; the best solution is kept.
 
@@ -244,26 +248,14 @@ class SpatialPredictor:
             When the work began, on the clock of `time.perf_counter`.
         warm : Solution, optional
             Solution of a similar task: its multipliers are the first ones.
+        hops : int
+            Runs from the best solution, displaced, after those from the starts.
         """
         now = time.perf_counter()
         begin = now if begin is None else begin
         deadline = now + self.options.time_limit
-        runs: list[SpatialOptimum] = []
-        for start in starts:
-            if runs and time.perf_counter() > deadline:
-                break
-            runs.append(self.run(task, start, warm))
-            if progress is not None:
-                solved = [run.solution.objective for run in runs if run.converged]
-                progress(len(runs), len(starts), min(solved, default=float('nan')))
-        optima = tuple(
-            sorted(
-                runs,
-                key=lambda run: (
-                    not run.converged,
-                    run.solution.objective if run.converged else run.solution.primal,
-                ),
-            )
+        optima = runs_from(
+            lambda start: self.run(task, start, warm), starts, hops, self.grid, deadline, progress
         )
         refiner = Refiner(self.library, self.grid, self.run, self.options.refinements)
         optima, check = refiner.best_that_holds(task, optima, deadline)

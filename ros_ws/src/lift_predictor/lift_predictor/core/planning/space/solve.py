@@ -105,7 +105,7 @@ def solve_in_space(
     if task.box_mass is None:
         prediction = maximum_weight(spatial, plan.task, starts, weighting, tell).prediction
     else:
-        prediction = spatial.solve_task(plan.task, starts, tell)
+        prediction = spatial.solve_task(plan.task, starts, tell, hops=spatial.options.hops)
     return _solved(spatial, plan, prediction)
 
 
