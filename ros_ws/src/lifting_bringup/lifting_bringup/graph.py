@@ -15,7 +15,7 @@ from rclpy.executors import Executor
 from rclpy.node import Node
 
 from lifting_bringup.graph_errors import TransitionError
-from lifting_bringup.node_process import NodeProcess
+from lifting_bringup.node_process import NodeProcess, stop_all
 
 #: Time [s] a node has for one lifecycle transition; the first start compiles the models.
 TRANSITION_TIMEOUT = 300.0
@@ -75,9 +75,7 @@ class Graph:
 
     def stop(self) -> dict[str, int]:
         """End all node processes; return their exit codes."""
-        for process in self.processes:
-            process.terminate()
-        return {process.name: process.stop() for process in self.processes}
+        return stop_all(self.processes)
 
     def _transition_all(self, transition: int, name: str) -> None:
         began = time.monotonic()

@@ -9,6 +9,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -37,7 +38,11 @@ _LIBC = ctypes.CDLL(None)
 #: From <linux/prctl.h>: the signal a process gets when its parent dies.
 _PR_SET_PDEATHSIG = 1
 
-#: Time [s] a process has to end after SIGTERM before it is killed.
+#: Time [s] after SIGTERM until a process gets SIGINT: one that computes in a callback heeds the
+#: first when that is done; for the second Python breaks it off.
+BREAK_OFF = 3.0
+
+#: Time [s] after SIGTERM until a process is killed.
 STOP_TIMEOUT = 15.0
 
 
@@ -72,14 +77,29 @@ class NodeProcess:
         if self.process.poll() is None:
             self.process.send_signal(signal.SIGTERM)
 
+    def ended_within(self, timeout: float) -> bool:
+        """Wait so long [s]; return whether the process has ended."""
+        try:
+            self.process.wait(max(timeout, 0.0))
+        except subprocess.TimeoutExpired:
+            return False
+        return True
+
     def stop(self) -> int:
         """End the process, first gently; return its exit code."""
-        self.terminate()
-        try:
-            return self.process.wait(STOP_TIMEOUT)
-        except subprocess.TimeoutExpired:
-            self.process.kill()
-            return self.process.wait()
+        return stop_all([self])[self.name]
+
+
+def stop_all(processes: list[NodeProcess]) -> dict[str, int]:
+    """End processes side by side, first gently; return their exit codes by name."""
+    began = time.monotonic()
+    for process in processes:
+        process.terminate()
+    for patience, number in ((BREAK_OFF, signal.SIGINT), (STOP_TIMEOUT, signal.SIGKILL)):
+        for process in processes:
+            if not process.ended_within(began + patience - time.monotonic()):
+                process.process.send_signal(number)
+    return {process.name: process.process.wait() for process in processes}
 
 
 def discovery() -> dict[str, str]:
@@ -199,8 +219,5 @@ def node_processes(
         yield processes
     finally:
         deafness.begin()
-        for process in processes:
-            process.terminate()
-        for process in processes:
-            process.stop()
+        stop_all(processes)
         deafness.end()

@@ -29,7 +29,13 @@ from lifting_bringup.graph_errors import SessionError
 from lifting_bringup.interruption import Deafness
 from lifting_bringup.live_state import FOLLOWED, LiveState
 from lifting_bringup.live_view import LiveView
-from lifting_bringup.node_process import NodeProcess, discovery, node_processes, start_module
+from lifting_bringup.node_process import (
+    NodeProcess,
+    discovery,
+    node_processes,
+    start_module,
+    stop_all,
+)
 from lifting_node import qos
 
 #: Topics of the results file: the recording's description and everything the graph says of it.
@@ -191,7 +197,7 @@ def run_online(
         summary = summarise(options.bag)
         shutil.rmtree(options.output / 'recording', ignore_errors=True)
         helpers = _start_helpers(options, logs, summary)
-        stack.callback(_stop, helpers)
+        stack.callback(stop_all, helpers)
         recorder, player = helpers
         os.environ.update(discovery())
         stack.callback(faulthandler.cancel_dump_traceback_later)
@@ -207,7 +213,7 @@ def run_online(
         stack.callback(
             faulthandler.dump_traceback_later, CLOSING, exit=True, file=sys.__stderr__
         )
-        stack.callback(_stop, [*helpers, *processes])
+        stack.callback(stop_all, [*helpers, *processes])
         stack.callback(deafness.begin)
         executor.add_node(node)
         graph = Graph(node, executor, options.station, processes, say)
@@ -220,13 +226,6 @@ def run_online(
         session.play(player, recorder)
         codes = {'recorder': recorder.stop(), **graph.stop()}
         return RunReport(_collect(options.output), session.state, ready, codes)
-
-
-def _stop(processes: list[NodeProcess]) -> None:
-    for process in processes:
-        process.terminate()
-    for process in processes:
-        process.stop()
 
 
 def _start_helpers(

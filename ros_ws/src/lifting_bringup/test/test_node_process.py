@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from lifting_bringup import node_process
 from lifting_bringup.graph_errors import NodeDiedError
 from lifting_bringup.node_process import (
     DISCOVERY_PROFILE,
@@ -17,6 +18,7 @@ from lifting_bringup.node_process import (
     discovery,
     environment,
     start_module,
+    stop_all,
 )
 
 
@@ -79,6 +81,40 @@ def alive(process):
     except FileNotFoundError:
         return False
     return state not in 'ZX'
+
+
+STUBBORN = """
+import signal, sys, time
+signal.signal(signal.SIGTERM, signal.SIG_IGN)
+if sys.argv[1] == 'deaf':
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+print('ready', flush=True)
+try:
+    while True:
+        time.sleep(0.01)
+except KeyboardInterrupt:
+    sys.exit(3)
+"""
+
+
+def test_processes_that_do_not_end_are_broken_off_then_killed_side_by_side(
+    tmp_path, monkeypatch
+):
+    monkeypatch.setattr(node_process, 'BREAK_OFF', 0.2)
+    monkeypatch.setattr(node_process, 'STOP_TIMEOUT', 1.0)
+    (tmp_path / 'stubborn.py').write_text(STUBBORN)
+    monkeypatch.setenv('PYTHONPATH', str(tmp_path))
+    kinds = {'busy': 'busy', 'deaf_1': 'deaf', 'deaf_2': 'deaf', 'deaf_3': 'deaf'}
+    processes = [start_module(name, 'stubborn', tmp_path, arguments=(kind,))
+                 for name, kind in kinds.items()]
+    deadline = time.monotonic() + 30.0
+    while any('ready' not in process.log.read_text() for process in processes):
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+    began = time.monotonic()
+    codes = stop_all(processes)
+    assert codes == {'busy': 3, 'deaf_1': -9, 'deaf_2': -9, 'deaf_3': -9}
+    assert 1.0 <= time.monotonic() - began < 2.9
 
 
 def test_end_of_a_process_is_told_with_its_last_words(tmp_path):
