@@ -31,6 +31,9 @@ def add_to(commands: Any) -> None:
         '--weights', type=float, nargs=2, metavar=('EFFORT', 'BOX'), default=(0.15, 0.85),
         help='weighting where the largest mass is asked for (default: 0.15 0.85)',
     )  # fmt: skip
+    parser.add_argument(
+        '--no-report', action='store_true', help='do not write report.html into the folder'
+    )
     parser.set_defaults(handler=_run)
 
 
@@ -53,6 +56,12 @@ def _run(options: argparse.Namespace) -> int:
     except (LiftPredictorError, HumanModelError, MuscleAnalyzerError) as error:
         raise SessionError(str(error)) from error
     print('\n'.join(described(planned, files)))
+    if not options.no_report:
+        # Loads Matplotlib.
+        from lifting_bringup.planned_report import write_planned_report
+
+        page = write_planned_report(planned, entry, files, output / 'report.html')
+        print(f'report   {page}')
     return 0 if planned.report.ok else 1
 
 

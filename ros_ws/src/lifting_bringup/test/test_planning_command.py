@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -50,6 +51,16 @@ def test_example_is_planned_printed_and_written(tmp_path: Path, capsys) -> None:
         plan['l5_s1']['compression']
     )
     assert found['predicted_lift'].subject == found['subject'].pseudonym == 'woman_160'
+    page = (tmp_path / 'report.html').read_text(encoding='utf-8')
+    assert f'report   {tmp_path / "report.html"}' in printed
+    for words in ('Planned lift: stoop_8kg', 'can be done', 'Peak L5-S1 compression',
+                  'Hip (flexion', 'dynamic strength', 'Ground reaction', 'NOBODY LIFTED THIS',
+                  'woman_160'):
+        assert words in page
+    assert page.count('<svg') == 7
+    assert 'cannot be done' not in page
+    assert 'not available' not in page
+    assert not re.search(r'(src|href)\s*=\s*["\']http', page), 'the page needs nothing else'
 
 
 def test_place_out_of_reach_ends_with_the_reason_and_no_numbers(tmp_path: Path, capsys) -> None:
@@ -80,3 +91,20 @@ def test_command_line_loads_no_heavy_library() -> None:
         [sys.executable, '-c', code], capture_output=True, text=True, timeout=60, check=True
     )
     assert done.stdout.strip() == '[]'
+
+
+def test_page_of_what_cannot_be_done_draws_the_nearest_lift(tmp_path: Path) -> None:
+    path = changed(tmp_path, 'box_mass: 12.0', 'box_mass: 45.0')
+    assert main(['predict', str(path), '--output', str(tmp_path / 'out')]) == 1
+    page = (tmp_path / 'out' / 'report.html').read_text(encoding='utf-8')
+    assert 'cannot be done' in page
+    assert re.search(r'The nearest lift that can be done: [0-9.]+ kg instead of 45.00 kg', page)
+    assert page.count('<svg') == 5
+    assert 'muscles are analysed only where the task can be done' in page
+
+
+def test_page_can_be_left_out(tmp_path: Path) -> None:
+    path = changed(tmp_path, 'end: [0.55, 0.0, 0.9635]', 'end: [0.55, 0.0, 2.6]')
+    assert main(['predict', str(path), '--output', str(tmp_path / 'out'), '--no-report']) == 1
+    assert (tmp_path / 'out' / 'plan.json').exists()
+    assert not (tmp_path / 'out' / 'report.html').exists()
