@@ -25,6 +25,10 @@ from lift_predictor.core.sagittal.prediction import PredictedLift2D
 from lift_predictor.core.sagittal.programme import sagittal_library
 from lift_predictor.core.sagittal.report_function import ReportFunction
 from lift_predictor.core.sagittal.task import Box
+from lift_predictor.core.spatial.frame import StanceFrame
+from lift_predictor.core.spatial.grid import SpatialGrid
+from lift_predictor.core.spatial.person import SpatialPerson
+from lift_predictor.core.spatial.task import PlacedBox, SpatialTask, place_task
 
 BOX_DEPTH, BOX_HEIGHT = 0.238, 0.127
 BOX_GAP, SHELF_GAP, SHELF_HEIGHT = 0.033, 0.305, 0.9
@@ -50,6 +54,24 @@ def subject() -> Subject:
 @pytest.fixture(scope='session')
 def person(subject: Subject) -> Person:
     return Person.of(subject)
+
+
+@pytest.fixture(scope='session')
+def placed(subject: Subject) -> Callable[[SpatialGrid, float], SpatialTask]:
+    """Lifts of a box from the front to the left, by grid and mass."""
+    who = SpatialPerson.of(subject)
+    height = who.ankle_height
+    frame = StanceFrame(
+        0.0, np.zeros(3), np.array([[0.0, -0.15, height], [0.0, 0.15, height]]),
+        np.array([-0.14, 0.14]),
+    )  # fmt: skip
+    places = np.array([[0.42, 0.0, 0.2], [0.3, 0.3, 0.9]])
+
+    def make(grid: SpatialGrid, mass: float) -> SpatialTask:
+        box = PlacedBox((mass, mass), 0.24, 0.3, places, np.array([0.0, 0.7]))
+        return place_task(who, frame, box, (1.3, 1.3), grid)
+
+    return make
 
 
 @pytest.fixture(scope='session')

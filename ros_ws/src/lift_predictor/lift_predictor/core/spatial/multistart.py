@@ -35,7 +35,7 @@ def runs_from(
     starts: Sequence[SpatialStart],
     hops: int,
     grid: SpatialGrid,
-    deadline: float,
+    deadline: tuple[float, float],
     progress: Progress | None = None,
 ) -> tuple[SpatialOptimum, ...]:
     """Run from all starts, then from the best solution so far, displaced; the best comes first.
@@ -50,14 +50,15 @@ def runs_from(
         Displaced runs; none where no start led to a solution.
     grid : SpatialGrid
         Sizes of the programme.
-    deadline : float
-        On the clock of `time.perf_counter`: only the first run is begun after it.
+    deadline : pair of float
+        On the clock of `time.perf_counter`: no start but the first is begun after the first of
+        them, no displaced run after the second.
     progress : callable, optional
         Told after each run; what it raises ends the work.
     """
     runs: list[SpatialOptimum] = []
     for start in _all_starts(starts, hops, grid, runs):
-        if runs and time.perf_counter() > deadline:
+        if runs and time.perf_counter() > deadline[len(runs) >= len(starts)]:
             break
         runs.append(run(start))
         if progress is not None:

@@ -254,8 +254,10 @@ class SpatialPredictor:
         now = time.perf_counter()
         begin = now if begin is None else begin
         deadline = now + self.options.time_limit
+        # Half of the time is for margins.
+        until = (deadline, 0.5 * (now + deadline))
         optima = runs_from(
-            lambda start: self.run(task, start, warm), starts, hops, self.grid, deadline, progress
+            lambda start: self.run(task, start, warm), starts, hops, self.grid, until, progress
         )
         refiner = Refiner(self.library, self.grid, self.run, self.options.refinements)
         optima, check = refiner.best_that_holds(task, optima, deadline)

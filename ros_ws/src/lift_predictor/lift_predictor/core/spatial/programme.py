@@ -58,10 +58,8 @@ def spatial_library() -> NodeLibrary:
     return load_library('spatial', [core / name for name in SOURCES], make)
 
 
-def spatial_assembler(
-    library: NodeLibrary, grid: SpatialGrid, technique: bool = False
-) -> Assembler:
-    """Assembler of a grid, for all persons and tasks with or without a technique."""
+def spatial_groups(grid: SpatialGrid, technique: bool = False) -> list[Group]:
+    """Return the node functions of a grid, with or without those of a technique."""
 
     def splines(times: Array, orders: int) -> tuple[Channel]:
         basis = np.stack([grid.spline.basis(times, order) for order in range(orders)])
@@ -77,7 +75,14 @@ def spatial_assembler(
     if technique:
         channels = splines(np.array([0.0]), 1)
         groups.append(Group('technique', channels, (), len(TECHNIQUE_ROWS), np.zeros(1)))
-    return make_assembler(library, groups, grid.n_variables)
+    return groups
+
+
+def spatial_assembler(
+    library: NodeLibrary, grid: SpatialGrid, technique: bool = False
+) -> Assembler:
+    """Assembler of a grid, for all persons and tasks with or without a technique."""
+    return make_assembler(library, spatial_groups(grid, technique), grid.n_variables)
 
 
 def posture_assembler(library: NodeLibrary) -> Assembler:
