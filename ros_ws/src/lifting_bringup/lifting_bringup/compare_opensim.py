@@ -19,12 +19,13 @@ from muscle_analyzer.core.analyzer import MuscleAnalyzer
 from muscle_analyzer.core.analyzer_options import MuscleAnalyzerOptions
 from muscle_analyzer.core.exceptions import MuscleAnalyzerError
 from muscle_analyzer.core.opensim.answers import read_opensim
-from muscle_analyzer.core.opensim.compare import Comparison, compare
+from muscle_analyzer.core.opensim.compare import DIFFERENT_PROBLEM, Comparison, compare
 from muscle_analyzer.core.opensim.export import ExportOptions, export_motion
 from muscle_analyzer.core.opensim.motion_on_model import motion_on_model
 from muscle_analyzer.core.opensim.own_side import OwnSide
 from muscle_analyzer.core.opensim.process import find_opensim, run_referee
 from muscle_analyzer.core.opensim.setup_files import RESULTS
+from muscle_analyzer.core.static_optimization import Criterion, StaticOptimizationOptions
 
 #: So many instants, evenly over the lift, if none are asked for.
 DEFAULT_INSTANTS = 5
@@ -53,6 +54,8 @@ class CompareOptions:
         Whether muscle force depends on the fibre's length and velocity, on both sides.
     export_only : bool
         Write the files for OpenSim and stop.
+    criterion : str
+        Of this side's muscle recruitment; OpenSim's is always the sum of squares.
     """
 
     bag: Path
@@ -63,6 +66,7 @@ class CompareOptions:
     opensim_python: Path | None = None
     physiology: bool = False
     export_only: bool = False
+    criterion: str = Criterion.SQUARES.value
 
 
 def compare_opensim(options: CompareOptions, say: Callable[[str], None]) -> Comparison | None:
@@ -78,9 +82,15 @@ def compare_opensim(options: CompareOptions, say: Callable[[str], None]) -> Comp
     try:
         # Before anything else: to say after a minute that OpenSim is not there helps nobody.
         python = None if options.export_only else find_opensim(options.opensim_python)
+        if options.criterion != Criterion.SQUARES:
+            say(f'criterion {options.criterion} here, sum of squares in OpenSim, which has only '
+                f'sums of powers: {", ".join(DIFFERENT_PROBLEM)} are not compared')
         recorded = recorded_lifts(options.bag)
         found = recorded.lift(options.lift)
-        settings = MuscleAnalyzerOptions(force_length_velocity=options.physiology)
+        settings = MuscleAnalyzerOptions(
+            force_length_velocity=options.physiology,
+            static_optimization=StaticOptimizationOptions(criterion=options.criterion),
+        )
         analyzer = MuscleAnalyzer(settings)
         analyzer.configure(recorded.subject)
         body = found.lift.motion
@@ -151,8 +161,14 @@ def table(result: Comparison) -> str:
         numbers = [f'{value:.1f}' for pair in pairs for value in pair]
         costs = [f'{value:.6g}' for value in instant.cost_equal_torques]
         loads.append((f'{instant.time:.3f}', *numbers, *costs))
+    note = (
+        f'\nNot compared, because the criterion here is {result.criterion} and OpenSim minimises '
+        f'the sum of squares: {", ".join(result.not_compared)}. The loads below are those of the '
+        'two criteria; the cost is the sum of squares on both sides.\n'
+        if result.not_compared else ''
+    )  # fmt: skip
     return (
-        f'Largest differences, OpenSim {result.version}\n{_columns(lines)}\n\n'
+        f'Largest differences, OpenSim {result.version}\n{_columns(lines)}\n{note}\n'
         f'L5-S1 in the disc frame, and the cost at equal torques\n{_columns(loads)}'
     )
 

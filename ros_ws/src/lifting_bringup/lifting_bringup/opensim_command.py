@@ -27,6 +27,10 @@ def add_to(commands: Any) -> None:
         '--physiology', action='store_true', help="with the muscles' force-length-velocity"
     )
     parser.add_argument(
+        '--criterion', choices=('squares', 'cubes', 'min_max'), default='squares',
+        help='what this side minimises (OpenSim: squares); what then differs is not compared',
+    )  # fmt: skip
+    parser.add_argument(
         '--export-only', action='store_true', help='write the files for OpenSim, do not run it'
     )
     parser.set_defaults(handler=_run)
@@ -50,6 +54,7 @@ def _run(options: argparse.Namespace) -> int:
             opensim_python=options.opensim_python,
             physiology=options.physiology,
             export_only=options.export_only,
+            criterion=options.criterion,
         ),
         print,
     )

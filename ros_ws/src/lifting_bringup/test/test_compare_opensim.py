@@ -3,6 +3,7 @@
 """`lift compare-opensim`: what it writes, what it prints, and what it refuses."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -65,6 +66,22 @@ def test_a_lift_that_is_not_there_is_refused(tmp_path, capsys):
     arguments = ['compare-opensim', str(BAG), '--lift', '2', '--export-only']
     assert main([*arguments, '--out', str(tmp_path)]) == 1
     assert 'lift 2 is not there: the recording has 1' in capsys.readouterr().err
+
+
+def test_another_criterion_is_said_and_never_passed_over(tmp_path, monkeypatch):
+    def stop(bag):
+        raise SessionError('far enough')
+
+    monkeypatch.setattr(module, 'recorded_lifts', stop)
+    told = []
+    options = CompareOptions(BAG, tmp_path, export_only=True, criterion='min_max')
+    with pytest.raises(SessionError, match='far enough'):
+        compare_opensim(options, told.append)
+    assert told[0].startswith('criterion min_max here, sum of squares in OpenSim')
+    assert 'Not compared' not in table(RESULT)
+    other = replace(RESULT, criterion='min_max', not_compared=('activation', 'muscle force'))
+    assert 'Not compared, because the criterion here is min_max' in table(other)
+    assert 'activation, muscle force' in table(other)
 
 
 def test_without_opensim_it_says_so_before_any_work(tmp_path, capsys, monkeypatch):

@@ -17,10 +17,11 @@ from muscle_analyzer.core.analyzer_options import MuscleAnalyzerOptions
 from muscle_analyzer.core.exceptions import OpenSimError, StorageError
 from muscle_analyzer.core.opensim import setup_files as files
 from muscle_analyzer.core.opensim.answers import read_opensim
-from muscle_analyzer.core.opensim.compare import compare, difference
+from muscle_analyzer.core.opensim.compare import DIFFERENT_PROBLEM, compare, difference
 from muscle_analyzer.core.opensim.own_side import OwnSide
 from muscle_analyzer.core.opensim.storage import Storage, write_storage
 from muscle_analyzer.core.reserves import read_reserves
+from muscle_analyzer.core.static_optimization import StaticOptimizationOptions
 
 OPTIONS = MuscleAnalyzerOptions()
 #: The forces that OpenSim calls so are those of coordinates that are no plain rotation.
@@ -80,8 +81,8 @@ def read(folder, own):
     return read_opensim(folder, own.motion, side.muscle_names, side.coordinate_names, own.rows)
 
 
-def compared(box_lift, own, folder):
-    return compare(box_lift.motion, own.motion, own.rows, read(folder, own), OPTIONS)
+def compared(box_lift, own, folder, options=OPTIONS):
+    return compare(box_lift.motion, own.motion, own.rows, read(folder, own), options)
 
 
 def test_files_come_back_in_this_projects_order(own, tmp_path):
@@ -172,6 +173,22 @@ def test_forces_that_cost_more_are_told_apart_from_the_steps_after(box_lift, own
     assert result.difference('force on L5-S1').largest > 100.0
     assert result.difference('force on L5-S1, equal muscle forces').largest < 1e-6
     assert result.difference('force on any joint, equal muscle forces').largest < 1e-6
+
+
+def test_min_max_is_compared_only_where_opensims_squares_allow(box_lift, own, tmp_path):
+    criterion = StaticOptimizationOptions(criterion='min_max')
+    options = MuscleAnalyzerOptions(static_optimization=criterion)
+    result = compared(box_lift, own, write_results(tmp_path, own), options)
+    assert result.criterion == 'min_max'
+    assert result.not_compared == DIFFERENT_PROBLEM
+    assert not {row.quantity for row in result.differences} & set(DIFFERENT_PROBLEM)
+    # What takes OpenSim's activations, forces or torques has no difference all the same.
+    for row in result.differences:
+        if 'rates of the analysis' not in row.quantity:
+            assert row.percent_of_peak < 1e-6, row
+    assert result.difference('force on L5-S1, equal activations').ours > 1000.0
+    # The loads by instant are those of the two criteria, and differ.
+    assert any(abs(i.compression[0] - i.compression[1]) > 1.0 for i in result.instants)
 
 
 def test_optimum_balances_the_torques_of_the_forces_that_it_is_given(own):

@@ -6,6 +6,11 @@ Both get the same positions and the same forces from outside. The torques are th
 through the positions on both sides; how far the rates that the analysis itself uses lead from
 them is a row of its own. Rows that say "equal torques" or "equal muscle forces" put OpenSim's
 result of the step before into this project's step, so that they show one step alone.
+
+OpenSim minimises the sum of squared activations; it has no min/max. With another criterion of the
+analysis, activations, muscle forces and the load under them answer another question: they are
+left out and named (`DIFFERENT_PROBLEM`), and all rows that take OpenSim's activations or forces
+stay.
 """
 
 from __future__ import annotations
@@ -24,12 +29,15 @@ from muscle_analyzer.core.load_solver import ROOT_COORDINATES
 from muscle_analyzer.core.opensim.answers import Answer, OpenSimRun
 from muscle_analyzer.core.opensim.motion_on_model import MotionOnModel
 from muscle_analyzer.core.opensim.own_side import OwnSide
+from muscle_analyzer.core.static_optimization import Criterion
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
 _TRANSLATIONS = ('_tx', '_ty', '_tz')
 _MM = 1e3
+#: Rows that compare answers to the same question only if both criteria are sums of squares.
+DIFFERENT_PROBLEM = ('activation', 'muscle force', 'force on L5-S1')
 
 
 @dataclass(frozen=True)
@@ -86,12 +94,18 @@ class Comparison:
         Of OpenSim.
     seconds : mapping of str to list of float
         Wall time of OpenSim's tools.
+    criterion : str
+        Of the analysis; OpenSim's is the sum of squares.
+    not_compared : tuple of str
+        Quantities left out because the two criteria differ.
     """
 
     differences: tuple[Difference, ...]
     instants: tuple[Instant, ...]
     version: str
     seconds: dict[str, list[float]]
+    criterion: str = Criterion.SQUARES.value
+    not_compared: tuple[str, ...] = ()
 
     def as_dict(self) -> dict[str, Any]:
         """Return everything as plain data."""
@@ -171,6 +185,11 @@ def compare(
     equal = np.array(
         [own.reactions(int(k), force) for k, force in zip(rows, other.force, strict=True)]
     )
+    # What OpenSim's activations make of this project's muscles and reactions.
+    borrowed = other.activation * mine.force / mine.activation
+    carried = np.array(
+        [own.reactions(int(k), force) for k, force in zip(rows, borrowed, strict=True)]
+    )
 
     def muscle(index: tuple[int, ...]) -> str:
         return f'{own.muscle_names[index[1]]}, {at[index[0]]}'
@@ -198,6 +217,7 @@ def compare(
         ),
         difference('activation', '1', mine.activation, other.activation, muscle),
         difference('muscle force', 'N', mine.force, other.force, muscle),
+        difference('muscle force, equal activations', 'N', borrowed, other.force, muscle),
         difference(
             'muscle force, equal torques', 'N', np.array([f for *_, f in optima]), other.force,
             muscle,
@@ -211,6 +231,10 @@ def compare(
             instant,
         ),
         difference(
+            'force on L5-S1, equal activations', 'N', _size(carried[:, here]),
+            _size(other.reaction[:, here]), instant,
+        ),
+        difference(
             'force on L5-S1, equal muscle forces', 'N', _size(equal[:, here]),
             _size(other.reaction[:, here]), instant,
         ),
@@ -220,7 +244,12 @@ def compare(
         ),
     ]  # fmt: skip
     instants = _instants(own, rows, mine, other, optima)
-    return Comparison(tuple(rows_of_table), instants, run.version, run.seconds)
+    criterion = Criterion(options.static_optimization.criterion)
+    left_out = () if criterion is Criterion.SQUARES else DIFFERENT_PROBLEM
+    return Comparison(
+        tuple(row for row in rows_of_table if row.quantity not in left_out),
+        instants, run.version, run.seconds, criterion.value, left_out,
+    )  # fmt: skip
 
 
 def _size(wrenches: Array) -> Array:

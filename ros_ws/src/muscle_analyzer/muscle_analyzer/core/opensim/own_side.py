@@ -9,6 +9,8 @@ Everything is in OpenSim's ground axes.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -25,7 +27,7 @@ from muscle_analyzer.core.muscle_paths import MusclePaths, body_wrenches, postur
 from muscle_analyzer.core.opensim.answers import Answer
 from muscle_analyzer.core.opensim.motion_on_model import MotionOnModel
 from muscle_analyzer.core.reserves import read_reserves
-from muscle_analyzer.core.static_optimization import StaticOptimization
+from muscle_analyzer.core.static_optimization import Criterion, StaticOptimization
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
@@ -118,7 +120,8 @@ class OwnSide:
     ) -> tuple[float, float, Array]:
         """Share the very torques that other muscle forces and reserves balance.
 
-        The muscles are as strong as the others': force over activation.
+        The muscles are as strong as the others': force over activation. The criterion is the sum
+        of squares as OpenSim's, whatever that of the analysis is.
 
         Parameters
         ----------
@@ -139,7 +142,8 @@ class OwnSide:
         strength = force / activation
         reserves = read_reserves(self.coordinate_names)
         unit = np.array([reserve.torque for reserve in reserves])
-        options = self._options.static_optimization
+        # OpenSim knows only sums of powers, and is asked for squares.
+        options = replace(self._options.static_optimization, criterion=Criterion.SQUARES)
         solver = StaticOptimization(self.muscle_names, reserves, options)
         balance = solver.solve((arm * strength[:, None]).T, arm.T @ force + reserve)
         cost = float(np.sum(activation**2) + np.sum((reserve / unit) ** 2))
