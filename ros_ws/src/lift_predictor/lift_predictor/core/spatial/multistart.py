@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from lift_predictor.core.spatial.grid import SpatialGrid
 from lift_predictor.core.spatial.prediction import SpatialOptimum
 from lift_predictor.core.spatial.refine import as_start
-from lift_predictor.core.spatial.starts import SpatialStart
+from lift_predictor.core.spatial.starts import SpatialStart, mirrored
 
 Array = NDArray[np.float64]
 Progress = Callable[[int, int, float], None]
@@ -37,6 +37,7 @@ def runs_from(
     grid: SpatialGrid,
     deadline: tuple[float, float],
     progress: Progress | None = None,
+    mirror: bool = False,
 ) -> tuple[SpatialOptimum, ...]:
     """Run from all starts, then from the best solution so far, displaced; the best comes first.
 
@@ -55,9 +56,11 @@ def runs_from(
         them, no displaced run after the second.
     progress : callable, optional
         Told after each run; what it raises ends the work.
+    mirror : bool
+        Displace to the other side, see `starts.mirrored`.
     """
     runs: list[SpatialOptimum] = []
-    for start in _all_starts(starts, hops, grid, runs):
+    for start in _all_starts(starts, hops, grid, runs, mirror):
         if runs and time.perf_counter() > deadline[len(runs) >= len(starts)]:
             break
         runs.append(run(start))
@@ -68,7 +71,11 @@ def runs_from(
 
 
 def _all_starts(
-    starts: Sequence[SpatialStart], hops: int, grid: SpatialGrid, runs: list[SpatialOptimum]
+    starts: Sequence[SpatialStart],
+    hops: int,
+    grid: SpatialGrid,
+    runs: list[SpatialOptimum],
+    mirror: bool,
 ) -> Iterator[SpatialStart]:
     yield from starts
     rng = np.random.default_rng(SEED)
@@ -76,13 +83,17 @@ def _all_starts(
         best = min(runs, key=_rank)
         if not best.converged:
             break
-        yield displaced(as_start(best, grid), number, rng)
+        yield displaced(as_start(best, grid), number, rng, mirror)
 
 
-def displaced(start: SpatialStart, number: int, rng: np.random.Generator) -> SpatialStart:
+def displaced(
+    start: SpatialStart, number: int, rng: np.random.Generator, mirror: bool = False
+) -> SpatialStart:
     """Displace a start: by turns the whole motion of each coordinate, and each control value."""
     rows = start.control.shape[0] if number % 2 else 1
     shift = SPREAD * rng.normal(size=(rows, start.control.shape[1]))
+    if mirror:
+        shift = mirrored(shift)
     return SpatialStart(
         f'hop {number + 1}', start.control + shift, start.box_mass, start.duration
     )

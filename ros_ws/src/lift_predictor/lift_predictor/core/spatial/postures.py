@@ -18,7 +18,7 @@ from lift_predictor.core.solvers.spline_programme import SplineProgramme
 from lift_predictor.core.spatial.grid import HAND_SCALE, LIMITED, NODE_ROWS, SpatialGrid
 from lift_predictor.core.spatial.parameters import N_SPLINED, SPLINED
 from lift_predictor.core.spatial.programme import posture_assembler
-from lift_predictor.core.spatial.starts import SpatialStart, through
+from lift_predictor.core.spatial.starts import SpatialStart, leads_right, mirrored, through
 from lift_predictor.core.spatial.task import SpatialTask
 
 Array = NDArray[np.float64]
@@ -123,7 +123,8 @@ class PostureFinder:
         found: list[tuple[Array, float]] = []
         failed: UnreachableError | None = None
         for number in range(guesses):
-            begin = first + (SPREAD * rng.normal(size=len(first)) if number else 0.0)
+            shift = SPREAD * rng.normal(size=len(first)) if number else np.zeros(len(first))
+            begin = first + (mirrored(shift) if leads_right(task) else shift)
             try:
                 posture, effort = self._search(task, end, mass, begin)
             except UnreachableError as error:

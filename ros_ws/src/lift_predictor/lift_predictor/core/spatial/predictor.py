@@ -45,7 +45,7 @@ from lift_predictor.core.spatial.programme import (
 )
 from lift_predictor.core.spatial.recorded_task import recorded_task
 from lift_predictor.core.spatial.refine import Refiner
-from lift_predictor.core.spatial.starts import SpatialStart, recorded_starts
+from lift_predictor.core.spatial.starts import SpatialStart, leads_right, recorded_starts
 from lift_predictor.core.spatial.task import (
     SpatialTask,
     Windows,
@@ -257,8 +257,9 @@ class SpatialPredictor:
         # Half of the time is for margins.
         until = (deadline, 0.5 * (now + deadline))
         optima = runs_from(
-            lambda start: self.run(task, start, warm), starts, hops, self.grid, until, progress
-        )
+            lambda start: self.run(task, start, warm), starts, hops, self.grid, until, progress,
+            leads_right(task),
+        )  # fmt: skip
         refiner = Refiner(self.library, self.grid, self.run, self.options.refinements)
         optima, check = refiner.best_that_holds(task, optima, deadline)
         return self._finish(task, optima, check, now - begin, time.perf_counter() - now)

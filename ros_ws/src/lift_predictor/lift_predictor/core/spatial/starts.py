@@ -11,11 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lift_predictor.core.spatial.grid import SpatialGrid
+from lift_predictor.core.spatial.parameters import SPLINED
 from lift_predictor.core.spatial.task import SpatialTask
 
 Array = NDArray[np.float64]
 
 _DENSE: Final = 41
+_ODD: Final = ('pelvis_aside', 'pelvis_turn', 'bending', 'rotation')
+"""Coordinates that change their sign in the mirror image."""
+_SWAPPED: Final = {'_r': '_l', '_l': '_r'}
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +39,22 @@ class SpatialStart:
     def variables(self) -> Array:
         """Variables of the programme."""
         return np.concatenate((self.control.ravel(), (self.box_mass, self.duration)))
+
+
+def leads_right(task: SpatialTask) -> bool:
+    """Whether the box's places lie more to the right than to the left."""
+    return bool(task.bounds.hand.reshape(-1, 3)[:, 1].sum() < 0.0)
+
+
+def mirrored(values: Array) -> Array:
+    """Splined coordinates (..., 26) of the mirror image: right and left change sides.
+
+    What is drawn at random for lifts to the left is mirrored for those to the right, so that both
+    come out alike.
+    """
+    order = [SPLINED.index(name[:-2] + _SWAPPED.get(name[-2:], name[-2:])) for name in SPLINED]
+    sign = np.array([-1.0 if name.endswith(_ODD) else 1.0 for name in SPLINED])
+    return np.asarray(sign * values[..., order])
 
 
 def smooth_step(s: Array) -> Array:

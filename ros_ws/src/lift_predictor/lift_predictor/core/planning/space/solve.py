@@ -24,6 +24,7 @@ from lift_predictor.core.spatial.maximum_weight import (
     total_effort,
 )
 from lift_predictor.core.spatial.person import SpatialPerson
+from lift_predictor.core.spatial.postures import GUESSES
 from lift_predictor.core.spatial.prediction import PredictedLift3D, SpatialOptimum
 from lift_predictor.core.spatial.predictor import SpatialPredictor
 from lift_predictor.core.spatial.refine import as_start
@@ -101,11 +102,14 @@ def solve_in_space(
 
     spatial, person = _configured(predictor)
     plan = place_plan(spatial, person, task, feet)
-    starts = (*first, *plan.starts(spatial)[:n_starts])
+    guesses = GUESSES if n_starts is None else 1
+    starts = (*first, *plan.starts(spatial, guesses)[:n_starts])
     if task.box_mass is None:
         prediction = maximum_weight(spatial, plan.task, starts, weighting, tell).prediction
     else:
-        prediction = spatial.solve_task(plan.task, starts, tell, hops=spatial.options.hops)
+        # Who limits the starts wants a lift, not the best one.
+        hops = spatial.options.hops if n_starts is None else 0
+        prediction = spatial.solve_task(plan.task, starts, tell, hops=hops)
     return _solved(spatial, plan, prediction)
 
 
@@ -156,7 +160,7 @@ def probe_in_space(
         start = as_start(neighbour.run, spatial.grid)
         run = spatial.run(plan.task, start, neighbour.run.solution)
     if run is None or not run.converged:
-        run = spatial.run(plan.task, plan.starts(spatial)[0])
+        run = spatial.run(plan.task, plan.starts(spatial, guesses=1)[0])
     if not run.converged:
         return Probe(feet, run, float('inf'))
     mass = float(run.solution.x[-2])

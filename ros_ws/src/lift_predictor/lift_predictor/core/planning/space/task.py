@@ -19,7 +19,7 @@ from lift_predictor.core.spatial.frame import StanceFrame
 from lift_predictor.core.spatial.maximum_weight import open_mass
 from lift_predictor.core.spatial.parameters import DEPENDENT, SPLINED
 from lift_predictor.core.spatial.person import SpatialPerson
-from lift_predictor.core.spatial.postures import PostureFinder
+from lift_predictor.core.spatial.postures import GUESSES, PostureFinder
 from lift_predictor.core.spatial.predictor import SpatialPredictor
 from lift_predictor.core.spatial.starts import SpatialStart, through
 from lift_predictor.core.spatial.task import (
@@ -69,16 +69,19 @@ class SpacePlan:
     task: SpatialTask
     ends: tuple[Array, Array]
 
-    def starts(self, spatial: SpatialPredictor) -> tuple[SpatialStart, ...]:
+    def starts(
+        self, spatial: SpatialPredictor, guesses: int = GUESSES
+    ) -> tuple[SpatialStart, ...]:
         """Return initial guesses: by least effort at rest, if the box can be held so, and by ends.
 
-        Where the person is too weak to hold the box, the second alone is left to begin with.
+        Where the person is too weak to hold the box, the second alone is left to begin with. The
+        postures at rest are searched from so many guesses.
         """
         mass = float(self.task.bounds.box_mass[0])
         first, last = self.ends
         own = through(self.task, spatial.grid, (first, None, last), 'between near postures', mass)
         try:
-            found = PostureFinder(spatial.library).starts(self.task, spatial.grid)
+            found = PostureFinder(spatial.library).starts(self.task, spatial.grid, guesses)
         except UnreachableError:
             return (own,)
         return (*found, own)
