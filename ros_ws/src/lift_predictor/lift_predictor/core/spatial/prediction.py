@@ -15,6 +15,7 @@ from human_model.report import SolveReport
 from lift_predictor.core.nearest_lift import NearestLift
 from lift_predictor.core.solvers.solution import Solution
 from lift_predictor.core.spatial.evaluation import SpatialLoads
+from lift_predictor.core.spatial.parameters import N_SCALARS, N_SPLINED
 from lift_predictor.core.spatial.verify import SpatialVerification
 
 Array = NDArray[np.float64]
@@ -108,7 +109,7 @@ class PredictedLift3D:
     @property
     def control(self) -> Array:
         """Free control values (n_free, 26) of the run that was kept."""
-        return self.optima[0].solution.x[:-2].reshape(-1, 26)
+        return self.optima[0].solution.x[:-N_SCALARS].reshape(-1, N_SPLINED)
 
     @classmethod
     def failed(
