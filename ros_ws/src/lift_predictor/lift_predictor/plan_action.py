@@ -84,7 +84,10 @@ class PlanAction:
         return GoalResponse.ACCEPT if self._ready() else GoalResponse.REJECT
 
     async def _on_goal(self, handle: ServerGoalHandle) -> PlanLift.Result:
-        result = PlanLift.Result(feet_forward=math.nan, technique_index=math.nan)
+        result = PlanLift.Result(
+            feet_forward=math.nan, feet_left=math.nan, feet_heading=math.nan,
+            technique_index=math.nan,
+        )  # fmt: skip
         try:
             subject = conversions.subject_from_msg(handle.request.subject)
             task = task_from_goal(handle.request)
@@ -110,6 +113,8 @@ class PlanAction:
             handle.abort()
             return result
         result.feet_forward = planned.ankle
+        result.feet_left = planned.left
+        result.feet_heading = planned.heading
         result.technique_index = planned.index
         result.binding = list(planned.binding)
         handle.succeed()
