@@ -134,7 +134,7 @@ def test_moment_arms_equal_opensim(name):
     plain = ~np.isin(kinds, [ELLIPSOID, SEVERAL])
     assert error[:, plain].max() < rounding
     if np.any(kinds == ELLIPSOID):
-        assert np.percentile(error[:, kinds == ELLIPSOID], 99.9) < 0.15e-3
+        assert np.percentile(error[:, kinds == ELLIPSOID], 99.9) < 0.03e-3
 
 
 def supinators(model):
@@ -149,7 +149,7 @@ def test_lengths_equal_opensim(name):
     rounding = 1e-7 if name == 'Rajagopal2015' else 1e-12
     plain = ~np.isin(kinds, [ELLIPSOID, SEVERAL]) & ~supinators(compiled(name))
     assert error[:, plain].max() < rounding
-    assert error[:, kinds == ELLIPSOID].max(initial=0.0) < 0.15e-3
+    assert error[:, kinds == ELLIPSOID].max(initial=0.0) < 0.03e-3
     assert error[:, kinds == SEVERAL].max(initial=0.0) < 5.5e-3
 
 

@@ -71,8 +71,8 @@ def test_moment_arms_equal_opensim(which):
     data = reference(which)
     error = np.abs(arms - data['moment_arm'])[np.abs(data['moment_arm']) > 1e-6]
     assert np.median(error) < 1e-9
-    assert np.percentile(error, 99) < 0.15e-3
-    assert error.max() < 0.6e-3
+    assert np.percentile(error, 99) < 0.01e-3
+    assert error.max() < 0.35e-3
 
 
 @pytest.mark.parametrize('which', CASES)
@@ -87,7 +87,7 @@ def test_lengths_equal_opensim(which):
     data = reference(which)
     error = np.abs(lengths - data['length'])
     twice = np.array([name.startswith('gas') for name in data['muscles']])
-    assert error[:, ~twice].max() < 0.15e-3
+    assert error[:, ~twice].max() < 0.04e-3
     assert error[:, twice].max() < 4.5e-3
     wrapped = {muscle.name for muscle in compiled(which).source.muscles if muscle.wraps}
     free = np.array([name not in wrapped for name in data['muscles']])

@@ -12,7 +12,10 @@ muscles at random over surfaces of every type and half.  What is known to differ
 * for some tangents on a half of a cylinder, a sphere or a torus it takes the arc the other way
   round, or of negative length; tangents and moment arms are the same;
 * over ellipsoids it fails now and then (no number);
-* its search for the point of a torus nearest to a segment may stop early.
+* its search for the point of a torus nearest to a segment may end where the residual turns without
+  reaching zero (one path here, at -0.024 m, 0.115 m from the end it started at): no point of the
+  segment is nearest there, and OpenSim takes it if it looks nearer than the one found from the
+  other end.
 """
 
 from functools import cache
@@ -128,10 +131,10 @@ def test_ellipsoids_equal_opensim():
     lengths, arms = errors()
     chosen = muscles_of('ellipsoid')
     assert np.median(arms[:, chosen].max(axis=2)) < 1e-6
-    assert arms[:, chosen].max() < 0.3e-3
+    assert arms[:, chosen].max() < 0.05e-3
     failed = np.isnan(lengths[:, chosen])
     assert failed.mean() < 0.02
-    assert np.nanmax(np.abs(lengths[:, chosen])) < 0.1e-3
+    assert np.nanmax(np.abs(lengths[:, chosen])) < 0.02e-3
 
 
 def test_moment_arms_are_the_derivatives_of_the_lengths():

@@ -13,14 +13,14 @@ from muscle_analyzer.core.sphere_wrapping import wrap_sphere
 from muscle_analyzer.core.wrapping import INSIDE, MISSED, PIERCED, POSSIBLE
 
 RADIUS = 0.04
-SIZE = np.array([RADIUS, 0.0, 0.0])
+SIZE = (RADIUS, 0.0, 0.0)
 X, Y = 0, 1
 
 
 def wrap(first, second, axis=X, sign=0):
     first, second = np.array(first, float), np.array(second, float)
-    near, far = np.zeros(3), np.zeros(3)
-    contact, arc = wrap_sphere(first, second, SIZE, axis, sign, near, far)
+    contact, arc, *tangents = wrap_sphere(tuple(first), tuple(second), SIZE, axis, sign)
+    near, far = np.array(tangents)
     whole = np.linalg.norm(near - first) + arc + np.linalg.norm(second - far)
     return contact, near, far, arc, whole
 

@@ -14,14 +14,14 @@ from muscle_analyzer.core.torus_wrapping import PASSED, nearest_of_ring, wrap_to
 from muscle_analyzer.core.wrapping import POSSIBLE
 
 TUBE, RING = 0.02, 0.05
-SIZE = np.array([TUBE, RING, 0.0])
+SIZE = (TUBE, RING, 0.0)
 X = 0
 
 
 def wrap(first, second, axis=X, sign=0, geodesic=True):
     first, second = np.array(first, float), np.array(second, float)
-    near, far = np.zeros(3), np.zeros(3)
-    contact, arc = wrap_torus(first, second, SIZE, axis, sign, geodesic, near, far)
+    contact, arc, *tangents = wrap_torus(tuple(first), tuple(second), SIZE, axis, sign, geodesic)
+    near, far = np.array(tangents)
     whole = np.linalg.norm(near - first) + arc + np.linalg.norm(second - far)
     return contact, near, far, arc, whole
 
@@ -78,8 +78,8 @@ def test_nearest_point_is_a_minimum_of_the_search_function(seed):
     """The line's distance from a circle of twice the radius, as the module's header says."""
     rng = np.random.default_rng(seed)
     first, second = rng.normal(scale=0.1, size=(2, 3))
-    found = np.zeros(3)
-    assert nearest_of_ring(first, second, RING, X, 0, found)
+    there, *found = nearest_of_ring(tuple(first), tuple(second), RING, X, 0)
+    assert there
     assert np.hypot(found[0], found[1]) == pytest.approx(RING)
     direction = (second - first) / np.linalg.norm(second - first)
 
@@ -95,5 +95,5 @@ def test_nearest_point_is_a_minimum_of_the_search_function(seed):
     for k in low:
         u = minimize_scalar(square, bracket=(grid[k - 1], grid[k], grid[k + 1]), tol=1e-14).x
         point = first + u * direction
-        off.append(np.linalg.norm(RING * point[:2] / np.hypot(*point[:2]) - found[:2]))
+        off.append(np.linalg.norm(RING * point[:2] / np.hypot(*point[:2]) - found))
     assert min(off) < 1e-6

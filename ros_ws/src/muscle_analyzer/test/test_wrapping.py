@@ -18,8 +18,9 @@ X, Y = 0, 1
 
 def wrap(first, second, axis=X, sign=0, size=SIZE, geodesic=True):
     first, second = np.array(first, float), np.array(second, float)
-    near, far = np.zeros(3), np.zeros(3)
-    contact, arc = wrap_cylinder(first, second, size, axis, sign, geodesic, near, far)
+    ends = tuple(first), tuple(second)
+    contact, arc, *tangents = wrap_cylinder(*ends, tuple(size), axis, sign, geodesic)
+    near, far = np.array(tangents)
     whole = np.linalg.norm(near - first) + arc + np.linalg.norm(second - far)
     return contact, near, far, arc, whole
 

@@ -4,74 +4,65 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from muscle_analyzer.core.ellipsoid_wrapping import HYBRID, MIDPOINT
-from muscle_analyzer.core.exceptions import OsimFormatError, UnsupportedElementError
+from muscle_analyzer.core.exceptions import OsimFormatError
 from muscle_analyzer.core.functions import FunctionTable, function_table
 from muscle_analyzer.core.multibody import MultibodyModel
-from muscle_analyzer.core.osim_model import Muscle, OsimModel, PathPoint
+from muscle_analyzer.core.osim_model import PathPoint
+from muscle_analyzer.core.wrap_table import WrapTable, starts, wrap_table
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-#: Kinds of wrap object the path functions know.
-CYLINDER, ELLIPSOID, SPHERE, TORUS = 0, 1, 2, 3
-_KINDS = {'cylinder': CYLINDER, 'ellipsoid': ELLIPSOID, 'sphere': SPHERE, 'torus': TORUS}
-_METHODS = {'hybrid': HYBRID, 'midpoint': MIDPOINT}
 #: A conditional point is there up to so far outside its range (constant of OpenSim), rad or m.
 CONDITION_MARGIN = 1e-5
-#: Active halves of a wrap object: coordinate and sign; sign 0 is the whole surface.
-_HALVES = {
-    'all': (0, 0),
-    'x': (0, 1),
-    '-x': (0, -1),
-    'y': (1, 1),
-    '-y': (1, -1),
-    'z': (2, 1),
-    '-z': (2, -1),
-}
 
 
-class WrapTable(NamedTuple):
+class SpanTable(NamedTuple):
     """
-    Uses of wrap objects by all muscles of one model.
+    Straight spans of the muscles whose path need not be found.
 
     Attributes
     ----------
     start : (n_m + 1,)
-    kind, body : (n_w,)
-    rotation, translation : (n_w, 3, 3), (n_w, 3)
-        Body from wrap object's frame [m].
-    dimensions : (n_w, 3)
-        Cylinder: radius, length; ellipsoid: half axes; sphere: radius; torus: radius of the tube
-        and of its centre line [m].
-    axis, sign : (n_w,)
-        Active half.
-    method : (n_w,)
-        How an ellipsoid's guide is chosen.
-    first, last : (n_w,)
-        First and last point between which the path may wrap.
-    geodesic : (1,)
-        Whether a path over a single cylinder is its geodesic or OpenSim's construction
-        (see `wrapping`); over more than one it always is the geodesic.
+        Spans of muscle m are ``start[m]`` to ``start[m + 1] - 1``.
+    point, entry : (n_s, 2), (n_s, 2)
+        Points at the ends, on different bodies, and places of these bodies in
+        `PathTable.body_index`.
+    fixed_length : (n_m,)
+        Length of a muscle's spans that stay on one body [m].
     """
 
     start: IntArray
-    kind: IntArray
-    body: IntArray
-    rotation: Array
-    translation: Array
-    dimensions: Array
-    axis: IntArray
-    sign: IntArray
-    method: IntArray
-    first: IntArray
-    last: IntArray
-    geodesic: NDArray[np.bool_]
+    point: IntArray
+    entry: IntArray
+    fixed_length: Array
+
+
+class ProductTable(NamedTuple):
+    """
+    What makes moment arms: wrenches on bodies times columns of the bodies' Jacobians.
+
+    Attributes
+    ----------
+    column_body, column_coordinate : (n_j,)
+        Columns of the Jacobians that are not zero whatever the posture, as far as used.
+    start : (n_k + 1,)
+        Products for place k of `PathTable.crossed_index` are ``start[k]`` to ``start[k + 1] - 1``.
+    entry, column : (n_t,)
+        Place of the body in `PathTable.body_index`, and number of the column.
+    """
+
+    column_body: IntArray
+    column_coordinate: IntArray
+    start: IntArray
+    entry: IntArray
+    column: IntArray
 
 
 class PathTable(NamedTuple):
@@ -94,10 +85,16 @@ class PathTable(NamedTuple):
         behind them (-1 if locked), and the numbers of the functions.
     functions : FunctionTable
     wraps : WrapTable
+    routed : (n_r,)
+        Muscles whose path has to be found: those that may wrap, and those with points that are
+        conditional or moving. All others are straight from point to point.
+    spans : SpanTable
+        Of the other muscles.
     body_start, body_index : (n_m + 1,), (n_e,)
         Bodies that a muscle acts on.
     crossed_start, crossed_index : (n_m + 1,), (n_k,)
         Independent coordinates that can change a muscle's length.
+    products : ProductTable
     longest : (1,)
         Most points that a path can have, wrap points counted.
     """
@@ -114,10 +111,13 @@ class PathTable(NamedTuple):
     motion_function: IntArray
     functions: FunctionTable
     wraps: WrapTable
+    routed: IntArray
+    spans: SpanTable
     body_start: IntArray
     body_index: IntArray
     crossed_start: IntArray
     crossed_index: IntArray
+    products: ProductTable
     longest: IntArray
 
 
@@ -140,25 +140,23 @@ def path_table(multibody: MultibodyModel, geodesic: bool = False) -> PathTable:
         For a wrap object, quadrant or method that is not modelled; names it.
     """
     model = multibody.source
-    wraps = [
-        _wrap_row(model, multibody, muscle, number)
-        for muscle in model.muscles
+    uses = [
+        (m, muscle.wraps[number])
+        for m, muscle in enumerate(model.muscles)
         for number in range(len(muscle.wraps))
         if model.wrap_object(muscle.wraps[number].wrap_object).active
     ]
-    owners = [row[0] for row in wraps]
     points = [point for muscle in model.muscles for point in muscle.points]
     conditions = [point for point in points if point.kind == 'conditional']
     motions = [point for point in points if point.kind == 'moving']
-    point_body = [multibody.body_index(point.body) for point in points]
-    point_start = _starts([len(muscle.points) for muscle in model.muscles])
-    wrap_start = _starts([owners.count(muscle.name) for muscle in model.muscles])
-    wrap_body = [row[2] for row in wraps]
+    point_body = np.array([multibody.body_index(point.body) for point in points], np.int64)
+    point_location = np.array([point.location for point in points]).reshape(-1, 3)
+    point_start = starts([len(muscle.points) for muscle in model.muscles])
+    wraps = wrap_table(model, multibody, uses, geodesic)
+    wrap_body = wraps.body[wraps.surface]
     bodies = [
-        sorted({*point_body[p0:p1], *wrap_body[w0:w1]})
-        for p0, p1, w0, w1 in zip(
-            point_start[:-1], point_start[1:], wrap_start[:-1], wrap_start[1:], strict=True
-        )
+        sorted({*point_body[p0:p1].tolist(), *wrap_body[w0:w1].tolist()})
+        for (p0, p1), (w0, w1) in zip(pairwise(point_start), pairwise(wraps.start), strict=True)
     ]
     driven = _driven_motions(multibody)
     moved_by = np.array(
@@ -168,16 +166,20 @@ def path_table(multibody: MultibodyModel, geodesic: bool = False) -> PathTable:
     independent = multibody.tree.independent[moved_by]
     point_motion = _numbers_of('moving', points)
     crossed = []
-    for begin, end, body in zip(point_start[:-1], point_start[1:], bodies, strict=True):
+    for (begin, end), body in zip(pairwise(point_start), bodies, strict=True):
         moving = [number for number in point_motion[begin:end] if number >= 0]
         by_motion = {int(q) for q in independent[moving].ravel() if q >= 0}
         crossed.append(sorted({*_crossed(driven, body), *by_motion}))
-    longest = (np.diff(point_start) + 2 * np.diff(wrap_start)).max(initial=0)
-    n_w = len(wraps)
+    special = np.array([point.kind != 'fixed' for point in points], np.bool_)
+    routed = [
+        bool(w1 > w0 or special[p0:p1].any())
+        for (p0, p1), (w0, w1) in zip(pairwise(point_start), pairwise(wraps.start), strict=True)
+    ]
+    longest = (np.diff(point_start) + 2 * np.diff(wraps.start)).max(initial=0)
     return PathTable(
         point_start=point_start,
-        point_body=np.array(point_body, np.int64),
-        point_location=np.array([point.location for point in points]).reshape(-1, 3),
+        point_body=point_body,
+        point_location=point_location,
         point_condition=_numbers_of('conditional', points),
         point_motion=point_motion,
         condition_coordinate=np.array(
@@ -189,63 +191,71 @@ def path_table(multibody: MultibodyModel, geodesic: bool = False) -> PathTable:
         motion_independent=independent,
         motion_function=np.arange(3 * len(motions), dtype=np.int64).reshape(-1, 3),
         functions=function_table([f for p in motions for f in p.location_functions]),
-        wraps=WrapTable(
-            start=wrap_start,
-            kind=np.array([row[1] for row in wraps], np.int64),
-            body=np.array(wrap_body, np.int64),
-            rotation=np.array([row[3] for row in wraps]).reshape(n_w, 3, 3),
-            translation=np.array([row[4] for row in wraps]).reshape(n_w, 3),
-            dimensions=np.array([row[5] for row in wraps]).reshape(n_w, 3),
-            axis=np.array([row[6][0] for row in wraps], np.int64),
-            sign=np.array([row[6][1] for row in wraps], np.int64),
-            method=np.array([row[7] for row in wraps], np.int64),
-            first=np.array([row[8] for row in wraps], np.int64),
-            last=np.array([row[9] for row in wraps], np.int64),
-            geodesic=np.array([geodesic]),
-        ),
-        body_start=_starts([len(body) for body in bodies]),
+        wraps=wraps,
+        routed=np.flatnonzero(routed).astype(np.int64),
+        spans=_spans(point_start, point_body, point_location, bodies, routed),
+        body_start=starts([len(body) for body in bodies]),
         body_index=np.array([b for body in bodies for b in body], np.int64),
-        crossed_start=_starts([len(cross) for cross in crossed]),
+        crossed_start=starts([len(cross) for cross in crossed]),
         crossed_index=np.array([c for cross in crossed for c in cross], np.int64),
+        products=_products(driven, bodies, crossed),
         longest=np.array([longest], np.int64),
     )
 
 
-def _starts(counts: list[int]) -> IntArray:
-    return np.concatenate([[0], np.cumsum(counts, dtype=np.int64)]).astype(np.int64)
+def _spans(
+    point_start: IntArray,
+    point_body: IntArray,
+    point_location: Array,
+    bodies: list[list[int]],
+    routed: list[bool],
+) -> SpanTable:
+    """Give the straight spans of the muscles that are not routed."""
+    counts: list[int] = []
+    spans: list[tuple[int, int]] = []
+    entries: list[list[int]] = []
+    fixed_length = np.zeros(len(bodies))
+    body_start = starts([len(body) for body in bodies])
+    for m, (begin, end) in enumerate(pairwise(point_start.tolist())):
+        before = len(spans)
+        for p in () if routed[m] else range(begin, end - 1):
+            ends = int(point_body[p]), int(point_body[p + 1])
+            if ends[0] == ends[1]:
+                way = point_location[p + 1] - point_location[p]
+                fixed_length[m] += float(np.linalg.norm(way))
+            else:
+                spans.append((p, p + 1))
+                entries.append([int(body_start[m]) + bodies[m].index(body) for body in ends])
+        counts.append(len(spans) - before)
+    return SpanTable(
+        start=starts(counts),
+        point=np.array(spans, np.int64).reshape(-1, 2),
+        entry=np.array(entries, np.int64).reshape(-1, 2),
+        fixed_length=fixed_length,
+    )
 
 
-def _wrap_row(
-    model: OsimModel, multibody: MultibodyModel, muscle: Muscle, number: int
-) -> tuple[str, int, int, Array, Array, Array, tuple[int, int], int, int, int]:
-    """Give one use of a wrap object as a row of the table, after its muscle's name."""
-    use = muscle.wraps[number]
-    surface = model.wrap_object(use.wrap_object)
-    where = f'{model.source}: muscle {muscle.name}: wrap object {surface.name}'
-    if surface.kind not in _KINDS:
-        raise UnsupportedElementError(f'{where}: kind {surface.kind} is not modelled')
-    if surface.quadrant not in _HALVES:
-        raise UnsupportedElementError(f'{where}: quadrant {surface.quadrant} is not modelled')
-    # Only ellipsoids heed the method.
-    method = use.method if surface.kind == 'ellipsoid' else 'hybrid'
-    if method not in _METHODS or (method == 'midpoint' and surface.quadrant != 'all'):
-        raise UnsupportedElementError(
-            f'{where}: method {method} on quadrant {surface.quadrant} is not modelled'
-        )
-    dimensions = np.zeros(3)
-    dimensions[: len(surface.dimensions)] = surface.dimensions
-    first, last = use.range
-    return (
-        muscle.name,
-        _KINDS[surface.kind],
-        multibody.body_index(surface.frame.body),
-        surface.frame.rotation,
-        surface.frame.translation,
-        dimensions,
-        _HALVES[surface.quadrant],
-        _METHODS[method],
-        first - 1 if first >= 1 else 0,
-        last - 1 if last >= 1 else len(muscle.points) - 1,
+def _products(
+    driven: list[list[set[int]]], bodies: list[list[int]], crossed: list[list[int]]
+) -> ProductTable:
+    """Give the products of wrenches and columns of Jacobians that make the moment arms."""
+    columns: dict[tuple[int, int], int] = {}
+    counts, entries, of_columns = [], [], []
+    body_start = starts([len(body) for body in bodies])
+    for m, coordinates in enumerate(crossed):
+        for q in coordinates:
+            moved = [k for k, body in enumerate(bodies[m]) if driven[body][q]]
+            counts.append(len(moved))
+            for k in moved:
+                entries.append(int(body_start[m]) + k)
+                of_columns.append(columns.setdefault((bodies[m][k], q), len(columns)))
+    pairs = np.array(list(columns), np.int64).reshape(-1, 2)
+    return ProductTable(
+        column_body=np.ascontiguousarray(pairs[:, 0]),
+        column_coordinate=np.ascontiguousarray(pairs[:, 1]),
+        start=starts(counts),
+        entry=np.array(entries, np.int64),
+        column=np.array(of_columns, np.int64),
     )
 
 

@@ -13,6 +13,7 @@ along its way as well.
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -21,14 +22,9 @@ from numpy.typing import NDArray
 
 from muscle_analyzer.core.functions import evaluate
 from muscle_analyzer.core.kinematics import BodyState
-from muscle_analyzer.core.muscle_path_table import PathTable
-from muscle_analyzer.core.path_wrapping import (
-    gap,
-    new_scratch,
-    out_of,
-    path_length,
-    wrap_path,
-)
+from muscle_analyzer.core.muscle_path_table import PathTable, ProductTable, SpanTable
+from muscle_analyzer.core.path_wrapping import gap, path_length, place_surfaces, wrap_path
+from muscle_analyzer.core.wrapping import Vector
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -56,158 +52,234 @@ class MusclePaths(NamedTuple):
     wrench: Array
 
 
-@njit(cache=True, error_model='numpy')
-def _active_points(
-    table: PathTable,
-    muscle: int,
-    body_position: Array,
-    body_rotation: Array,
-    coordinate: Array,
-    point: Array,
-    owner: NDArray[np.int64],
-) -> int:
-    """Put the points of a path that are there where they are; returns their number."""
-    begin = table.point_start[muscle]
-    moved = np.empty((1, 3))
-    n = 0
-    for p in range(begin, table.point_start[muscle + 1]):
-        body = table.point_body[p]
-        if table.point_condition[p] >= 0:
-            c = table.point_condition[p]
-            value = coordinate[table.condition_coordinate[c]]
-            if not table.condition_range[c, 0] <= value <= table.condition_range[c, 1]:
-                continue
-        if table.point_motion[p] >= 0:
-            d = table.point_motion[p]
-            for i in range(3):
-                value = coordinate[table.motion_coordinate[d, i]]
-                moved[0, i] = evaluate(table.functions, table.motion_function[d, i], value)[0]
-            out_of(body_rotation, body_position, body, moved, 0, point, n)
-        else:
-            out_of(body_rotation, body_position, body, table.point_location, p, point, n)
-        owner[n] = p - begin
-        n += 1
-    return n
+@njit(cache=True, error_model='numpy', inline='always')
+def _place_points(
+    table: PathTable, position: Array, rotation: Array, coordinate: Array
+) -> Array:
+    """Put all path points (n_p, 3) where they are in ground axes."""
+    bodies, location, motion = table.point_body, table.point_location, table.point_motion
+    place = np.empty(location.shape)
+    for p in range(bodies.size):
+        b = bodies[p]
+        x, y, z = location[p, 0], location[p, 1], location[p, 2]
+        for i in range(3):
+            place[p, i] = position[b, i] + (
+                rotation[b, i, 0] * x + rotation[b, i, 1] * y + rotation[b, i, 2] * z
+            )
+    if table.motion_coordinate.size > 0:
+        for p in range(bodies.size):
+            d = motion[p]
+            if d >= 0:
+                x, y = _moved(table, d, 0, coordinate), _moved(table, d, 1, coordinate)
+                z = _moved(table, d, 2, coordinate)
+                b = bodies[p]
+                for i in range(3):
+                    place[p, i] = position[b, i] + (
+                        rotation[b, i, 0] * x + rotation[b, i, 1] * y + rotation[b, i, 2] * z
+                    )
+    return place
 
 
-@njit(cache=True, error_model='numpy')
+@njit(cache=True, error_model='numpy', inline='always')
+def _moved(table: PathTable, motion: int, i: int, coordinate: Array) -> float:
+    """Give one coordinate of a moving point in its body [m]."""
+    x = coordinate[table.motion_coordinate[motion, i]]
+    return float(evaluate(table.functions, table.motion_function[motion, i], x)[0])
+
+
+@njit(cache=True, error_model='numpy', inline='always')
 def _add_motion(
     table: PathTable,
     motion: int,
     rotation: Array,
-    pull: Array,
+    body: int,
+    pull: Vector,
     coordinate: Array,
     coordinate_gain: Array,
     moment_arm: Array,
+    m: int,
 ) -> None:
-    """Add to a muscle's moment arms (n_q,) what it pulls a point along its way in its body."""
+    """Add to moment arms of muscle m what it pulls a point along its way in its body."""
     for i in range(3):
         q = table.motion_independent[motion, i]
         if q < 0:
             continue
         x = table.motion_coordinate[motion, i]
         slope = evaluate(table.functions, table.motion_function[motion, i], coordinate[x])[1]
-        along = 0.0
-        for j in range(3):
-            along += pull[j] * rotation[j, i]
-        moment_arm[q] += along * slope * coordinate_gain[x]
+        along = pull[0] * rotation[body, 0, i] + pull[1] * rotation[body, 1, i]
+        along += pull[2] * rotation[body, 2, i]
+        moment_arm[m, q] += along * slope * coordinate_gain[x]
+
+
+@njit(cache=True, error_model='numpy', inline='always')
+def _add_span(point: Array, k: int, other: int, wrench: Array, entry: int, opposite: int) -> float:
+    """Add what a straight span between two points does to both bodies; returns its length."""
+    x, y, z = point[k, 0], point[k, 1], point[k, 2]
+    ux, uy, uz = point[other, 0] - x, point[other, 1] - y, point[other, 2] - z
+    span = math.sqrt(ux * ux + uy * uy + uz * uz)
+    if span > 0.0:
+        share = 1.0 / span
+        ux, uy, uz = ux * share, uy * share, uz * share
+        mx, my, mz = y * uz - z * uy, z * ux - x * uz, x * uy - y * ux
+        # Both pushes lie on one line, so their moments about the origin are opposite too.
+        wrench[entry, 0] += mx
+        wrench[entry, 1] += my
+        wrench[entry, 2] += mz
+        wrench[entry, 3] += ux
+        wrench[entry, 4] += uy
+        wrench[entry, 5] += uz
+        wrench[opposite, 0] -= mx
+        wrench[opposite, 1] -= my
+        wrench[opposite, 2] -= mz
+        wrench[opposite, 3] -= ux
+        wrench[opposite, 4] -= uy
+        wrench[opposite, 5] -= uz
+    return span
+
+
+@njit(cache=True, error_model='numpy', inline='always')
+def _straight(spans: SpanTable, place: Array, length: Array, wrench: Array) -> None:
+    """Fill in the muscles that run straight from point to point."""
+    start, ends, entry, fixed = spans.start, spans.point, spans.entry, spans.fixed_length
+    for m in range(length.size):
+        whole = fixed[m]
+        for s in range(start[m], start[m + 1]):
+            whole += _add_span(place, ends[s, 0], ends[s, 1], wrench, entry[s, 0], entry[s, 1])
+        length[m] = whole
+
+
+@njit(cache=True, error_model='numpy', inline='always')
+def _routed(
+    table: PathTable,
+    place: Array,
+    frame: Array,
+    rotation: Array,
+    coordinate: Array,
+    coordinate_gain: Array,
+    length: Array,
+    wrench: Array,
+    moment_arm: Array,
+) -> None:
+    """Fill in the muscles whose path has to be found."""
+    routed, point_start, point_body = table.routed, table.point_start, table.point_body
+    condition, watched = table.point_condition, table.condition_coordinate
+    limits, motion = table.condition_range, table.point_motion
+    body_start, body_index = table.body_start, table.body_index
+    wraps = table.wraps
+    kind, size, axis, sign = wraps.kind, wraps.dimensions, wraps.axis, wraps.sign
+    start, surface, method = wraps.start, wraps.surface, wraps.method
+    first_of, last_of, surface_body = wraps.first, wraps.last, wraps.body
+    geodesic = wraps.geodesic[0]
+    moving = table.motion_coordinate.size > 0
+    longest = table.longest[0]
+    point, owner, arc = np.empty((longest, 3)), np.empty(longest, np.int64), np.zeros(longest)
+    bodies = np.empty(longest, np.int64)
+    order, contacts = np.empty(surface.size, np.int64), np.empty(surface.size, np.int64)
+    entry_of = np.empty(rotation.shape[0], np.int64)
+    for r in range(routed.size):
+        m = routed[r]
+        first, n = point_start[m], 0
+        for p in range(first, point_start[m + 1]):
+            c = condition[p]
+            if c >= 0 and not limits[c, 0] <= coordinate[watched[c]] <= limits[c, 1]:
+                continue
+            point[n, 0], point[n, 1], point[n, 2] = place[p, 0], place[p, 1], place[p, 2]
+            owner[n] = p - first
+            n += 1
+        n_wraps = start[m + 1] - start[m]
+        if n_wraps > 0:
+            n, length[m] = wrap_path(
+                kind, size, axis, sign, surface, method, first_of, last_of, start[m], n_wraps,
+                geodesic or n_wraps > 1, frame, order, contacts, point, owner, arc, n,
+            )
+        else:
+            length[m] = path_length(point, owner, arc, n)
+        for k in range(body_start[m], body_start[m + 1]):
+            entry_of[body_index[k]] = k
+        for k in range(n):
+            if owner[k] >= 0:
+                bodies[k] = point_body[first + owner[k]]
+            else:
+                bodies[k] = surface_body[surface[-1 - owner[k]]]
+        for k in range(n - 1):
+            if bodies[k] != bodies[k + 1]:
+                _add_span(point, k, k + 1, wrench, entry_of[bodies[k]], entry_of[bodies[k + 1]])
+        if moving:
+            for k in range(n):
+                if owner[k] >= 0 and motion[first + owner[k]] >= 0:
+                    number, pull = motion[first + owner[k]], _pull(point, n, k)
+                    _add_motion(
+                        table, number, rotation, bodies[k], pull, coordinate, coordinate_gain,
+                        moment_arm, m,
+                    )
 
 
 @njit(cache=True, error_model='numpy')
-def _body(point_body: IntArray, wrap_body: IntArray, first: int, owner: int) -> int:
-    """Give the body that carries a point of a path whose first point is number `first`."""
-    if owner < 0:
-        return int(wrap_body[-1 - owner])
-    return int(point_body[first + owner])
+def _pull(point: Array, n: int, k: int) -> Vector:
+    """Give the force on point k of a path of n points per unit of tension."""
+    x, y, z = 0.0, 0.0, 0.0
+    for other in (k - 1, k + 1):
+        if 0 <= other < n:
+            span = gap(point, k, other)
+            if span > 0.0:
+                x += (point[other, 0] - point[k, 0]) / span
+                y += (point[other, 1] - point[k, 1]) / span
+                z += (point[other, 2] - point[k, 2]) / span
+    return x, y, z
+
+
+@njit(cache=True, error_model='numpy', inline='always')
+def _add_moment_arms(
+    products: ProductTable,
+    crossed_start: IntArray,
+    crossed: IntArray,
+    wrench: Array,
+    jacobian: Array,
+    moment_arm: Array,
+) -> None:
+    """Add to the moment arms what the wrenches do per rate of the coordinates."""
+    of, about = products.column_body, products.column_coordinate
+    column = np.empty((of.size, 6))
+    for c in range(of.size):
+        for i in range(6):
+            column[c, i] = jacobian[of[c], i, about[c]]
+    start, entry, number = products.start, products.entry, products.column
+    for m in range(moment_arm.shape[0]):
+        for k in range(crossed_start[m], crossed_start[m + 1]):
+            arm = 0.0
+            for t in range(start[k], start[k + 1]):
+                e, c = entry[t], number[t]
+                arm += (
+                    (wrench[e, 0] * column[c, 0] + wrench[e, 1] * column[c, 1])
+                    + (wrench[e, 2] * column[c, 2] + wrench[e, 3] * column[c, 3])
+                    + (wrench[e, 4] * column[c, 4] + wrench[e, 5] * column[c, 5])
+                )
+            moment_arm[m, crossed[k]] += arm
 
 
 @njit(cache=True, error_model='numpy')
 def _paths(
     table: PathTable,
-    body_position: Array,
-    body_rotation: Array,
+    position: Array,
+    rotation: Array,
     jacobian: Array,
     coordinate: Array,
     coordinate_gain: Array,
 ) -> MusclePaths:
     n_m = table.point_start.size - 1
-    size = table.longest[0]
-    point, owner, arc = np.empty((size, 3)), np.empty(size, np.int64), np.zeros(size)
-    entry_of = np.empty(body_position.shape[0], np.int64)
     length = np.empty(n_m)
     moment_arm = np.zeros((n_m, jacobian.shape[2]))
     wrench = np.zeros((table.body_index.size, 6))
-    pull = np.empty(3)
-    scratch = new_scratch(table.wraps.kind.size)
-    special = table.condition_coordinate.size + table.motion_coordinate.size > 0
-    for m in range(n_m):
-        n = table.point_start[m + 1] - table.point_start[m]
-        if special:
-            n = _active_points(table, m, body_position, body_rotation, coordinate, point, owner)
-        else:
-            for k in range(n):
-                p = table.point_start[m] + k
-                body = table.point_body[p]
-                out_of(body_rotation, body_position, body, table.point_location, p, point, k)
-                owner[k] = k
-        if table.wraps.start[m + 1] > table.wraps.start[m]:
-            n, length[m] = wrap_path(
-                table.wraps, m, body_rotation, body_position, point, owner, arc, n, scratch
-            )
-        else:
-            length[m] = path_length(point, owner, arc, n)
-
-        first = table.point_start[m]
-        for k in range(table.body_start[m], table.body_start[m + 1]):
-            entry_of[table.body_index[k]] = k
-        for k in range(n - 1):
-            body_1 = _body(table.point_body, table.wraps.body, first, owner[k])
-            body_2 = _body(table.point_body, table.wraps.body, first, owner[k + 1])
-            if body_1 == body_2:
-                continue
-            span = gap(point, k, k + 1)
-            if span == 0.0:
-                continue
-            ux = (point[k + 1, 0] - point[k, 0]) / span
-            uy = (point[k + 1, 1] - point[k, 1]) / span
-            uz = (point[k + 1, 2] - point[k, 2]) / span
-            mx = point[k, 1] * uz - point[k, 2] * uy
-            my = point[k, 2] * ux - point[k, 0] * uz
-            mz = point[k, 0] * uy - point[k, 1] * ux
-            # Both pushes lie on one line, so their moments about the origin are opposite too.
-            for entry, sense in ((entry_of[body_1], 1.0), (entry_of[body_2], -1.0)):
-                wrench[entry, 0] += sense * mx
-                wrench[entry, 1] += sense * my
-                wrench[entry, 2] += sense * mz
-                wrench[entry, 3] += sense * ux
-                wrench[entry, 4] += sense * uy
-                wrench[entry, 5] += sense * uz
-        for c in range(table.crossed_start[m], table.crossed_start[m + 1]):
-            q = table.crossed_index[c]
-            arm = 0.0
-            for k in range(table.body_start[m], table.body_start[m + 1]):
-                body = table.body_index[k]
-                for i in range(6):
-                    arm += wrench[k, i] * jacobian[body, i, q]
-            moment_arm[m, q] = arm
-        if table.motion_coordinate.size > 0:
-            for k in range(n):
-                p = table.point_start[m] + owner[k]
-                if owner[k] < 0 or table.point_motion[p] < 0:
-                    continue
-                for i in range(3):
-                    pull[i] = 0.0
-                for other in (k - 1, k + 1):
-                    if 0 <= other < n:
-                        span = gap(point, k, other)
-                        if span > 0.0:
-                            for i in range(3):
-                                pull[i] += (point[other, i] - point[k, i]) / span
-                rotation = body_rotation[table.point_body[p]]
-                motion = table.point_motion[p]
-                _add_motion(
-                    table, motion, rotation, pull, coordinate, coordinate_gain, moment_arm[m]
-                )
+    place = _place_points(table, position, rotation, coordinate)
+    _straight(table.spans, place, length, wrench)
+    if table.routed.size > 0:
+        frame = place_surfaces(table.wraps, position, rotation)
+        _routed(
+            table, place, frame, rotation, coordinate, coordinate_gain, length, wrench, moment_arm
+        )
+    _add_moment_arms(
+        table.products, table.crossed_start, table.crossed_index, wrench, jacobian, moment_arm
+    )
     return MusclePaths(length, moment_arm, wrench)
 
 

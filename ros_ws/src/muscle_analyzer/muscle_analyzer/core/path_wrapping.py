@@ -5,22 +5,25 @@ Where a path of points leaves and meets the surfaces that it wraps over, compile
 
 Which segment of the path wraps over an object, in which order objects are tried and how often, is
 as in OpenSim's ``GeometryPath``; the single surfaces are in modules of their own.
+
+Arrays are given whole, with the numbers of rows: numba counts references of every row that is cut
+out as an array of its own, and of every array of a tuple of arrays, which costs more than the
+arithmetic.
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
 from muscle_analyzer.core.ellipsoid_wrapping import wrap_ellipsoid
-from muscle_analyzer.core.muscle_path_table import CYLINDER, ELLIPSOID, SPHERE, WrapTable
 from muscle_analyzer.core.sphere_wrapping import wrap_sphere
 from muscle_analyzer.core.torus_wrapping import wrap_torus
-from muscle_analyzer.core.wrapping import INSIDE, MISSED, PIERCED, POSSIBLE, wrap_cylinder
+from muscle_analyzer.core.wrap_table import CYLINDER, ELLIPSOID, SPHERE, WrapTable
+from muscle_analyzer.core.wrapping import INSIDE, MISSED, PIERCED, POSSIBLE, Vector, wrap_cylinder
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -30,79 +33,71 @@ IntArray = NDArray[np.int64]
 WRAP_ROUNDS, WRAP_TOLERANCE = 8, 1e-9
 
 
-class Scratch(NamedTuple):
-    """Working space of `wrap_path`, made once for all muscles: allocating costs time."""
+@njit(cache=True, error_model='numpy', inline='always')
+def place_surfaces(wraps: WrapTable, position: Array, rotation: Array) -> Array:
+    """
+    Give origin and axes (n_o, 12), ground from surface, of all wrap objects.
 
-    order: IntArray
-    contacts: IntArray
-    first: Array
-    second: Array
-    tangent_first: Array
-    tangent_second: Array
-    best: Array
-    rotation: Array
-    origin: Array
+    `position` (n_b, 3) and `rotation` (n_b, 3, 3) are those of the bodies.
+    """
+    bodies, turn, shift = wraps.body, wraps.rotation, wraps.translation
+    frame = np.empty((bodies.size, 12))
+    for k in range(bodies.size):
+        body = bodies[k]
+        for i in range(3):
+            rx, ry, rz = rotation[body, i, 0], rotation[body, i, 1], rotation[body, i, 2]
+            frame[k, i] = (
+                position[body, i] + rx * shift[k, 0] + ry * shift[k, 1] + rz * shift[k, 2]
+            )
+            for j in range(3):
+                frame[k, 3 + 3 * i + j] = (
+                    rx * turn[k, 0, j] + ry * turn[k, 1, j] + rz * turn[k, 2, j]
+                )
+    return frame
 
 
 @njit(cache=True, error_model='numpy')
-def new_scratch(most_wraps: int) -> Scratch:
-    """Make the working space for paths with so many wrap objects at most."""
-    return Scratch(
-        np.empty(most_wraps, np.int64),
-        np.empty(most_wraps, np.int64),
-        np.empty(3),
-        np.empty(3),
-        np.empty(3),
-        np.empty(3),
-        np.empty((2, 3)),
-        np.empty((3, 3)),
-        np.empty(3),
+def into(frame: Array, k: int, point: Array, p: int) -> Vector:
+    """Express ground point p of (n, 3) in frame k of (n_o, 12)."""
+    x, y, z = point[p, 0] - frame[k, 0], point[p, 1] - frame[k, 1], point[p, 2] - frame[k, 2]
+    return (
+        frame[k, 3] * x + frame[k, 6] * y + frame[k, 9] * z,
+        frame[k, 4] * x + frame[k, 7] * y + frame[k, 10] * z,
+        frame[k, 5] * x + frame[k, 8] * y + frame[k, 11] * z,
     )
 
 
 @njit(cache=True, error_model='numpy')
-def distance(a: Array, b: Array) -> float:
+def out_of(frame: Array, k: int, local: Vector) -> Vector:
+    """Express a point given in frame k of (n_o, 12) in ground axes."""
+    x, y, z = local
+    return (
+        frame[k, 0] + (frame[k, 3] * x + frame[k, 4] * y + frame[k, 5] * z),
+        frame[k, 1] + (frame[k, 6] * x + frame[k, 7] * y + frame[k, 8] * z),
+        frame[k, 2] + (frame[k, 9] * x + frame[k, 10] * y + frame[k, 11] * z),
+    )
+
+
+@njit(cache=True, error_model='numpy')
+def distance(a: Vector, b: Vector) -> float:
     """Give the distance of two points."""
-    return math.sqrt((b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2 + (b[2] - a[2]) ** 2)
+    dx, dy, dz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+    return math.sqrt(dx * dx + dy * dy + dz * dz)
 
 
-@njit(cache=True, error_model='numpy', inline='always')
-def into(rotation: Array, origin: Array, point: Array, k: int, out: Array) -> None:
-    """
-    Express ground point k of (n, 3) in a frame.
-
-    Rows are given by array and number, here and below: numba counts references of every row that
-    is cut out as an array of its own, which costs more than the arithmetic.
-    """
-    x, y, z = point[k, 0] - origin[0], point[k, 1] - origin[1], point[k, 2] - origin[2]
-    for i in range(3):
-        out[i] = rotation[0, i] * x + rotation[1, i] * y + rotation[2, i] * z
-
-
-@njit(cache=True, error_model='numpy', inline='always')
-def out_of(
-    rotation: Array, origin: Array, body: int, local: Array, p: int, out: Array, k: int
-) -> None:
-    """Put point p of (n, 3), in the axes of one of many bodies, into row k in ground axes."""
-    x, y, z = local[p, 0], local[p, 1], local[p, 2]
-    for i in range(3):
-        out[k, i] = origin[body, i] + (
-            rotation[body, i, 0] * x + rotation[body, i, 1] * y + rotation[body, i, 2] * z
-        )
-
-
-@njit(cache=True, error_model='numpy', inline='always')
+@njit(cache=True, error_model='numpy')
 def gap(point: Array, k: int, other: int) -> float:
     """Give the distance of two rows of (n, 3)."""
-    return math.sqrt(
-        (point[other, 0] - point[k, 0]) ** 2
-        + (point[other, 1] - point[k, 1]) ** 2
-        + (point[other, 2] - point[k, 2]) ** 2
+    dx, dy, dz = (
+        point[other, 0] - point[k, 0],
+        point[other, 1] - point[k, 1],
+        point[other, 2] - point[k, 2],
     )
+    return math.sqrt(dx * dx + dy * dy + dz * dz)
 
 
 @njit(cache=True, error_model='numpy')
-def path_length(point: Array, owner: NDArray[np.int64], arc: Array, n: int) -> float:
+def path_length(point: Array, owner: IntArray, arc: Array, n: int) -> float:
     """Add up a path; two neighbours of one wrap object are joined by its arc."""
     length = 0.0
     for k in range(n - 1):
@@ -114,138 +109,109 @@ def path_length(point: Array, owner: NDArray[np.int64], arc: Array, n: int) -> f
 
 
 @njit(cache=True, error_model='numpy')
-def _best_wrap(
-    wraps: WrapTable,
-    use: int,
-    rotation: Array,
-    origin: Array,
-    point: Array,
-    owner: NDArray[np.int64],
-    n: int,
+def _wrap_segment(
+    kind: int,
+    first: Vector,
+    second: Vector,
+    dimensions: Vector,
+    axis: int,
+    sign: int,
+    method: int,
     geodesic: bool,
-    scratch: Scratch,
-) -> tuple[int, int, float]:
-    """
-    Find the segment of a path that wraps over an object, and its tangent points.
-
-    The first segment that pierces the object is taken; otherwise the one whose wrap lengthens
-    the path least.  Returns the segment (-1 if none), the last contact and the arc length.
-    """
-    a, b = scratch.first, scratch.second
-    leave, meet = scratch.tangent_first, scratch.tangent_second
-    found, contact, arc, least = -1, MISSED, 0.0, np.inf
-    # Of the points that are there, the first and the last that the object counts for.
-    start, end = n, -1
-    for k in range(n):
-        if wraps.first[use] <= owner[k] <= wraps.last[use]:
-            start, end = min(start, k), k
-    for k in range(start, end):
-        if owner[k] < 0 and owner[k] == owner[k + 1]:
-            continue
-        into(rotation, origin, point, k, a)
-        into(rotation, origin, point, k + 1, b)
-        dimensions, axis = wraps.dimensions[use], wraps.axis[use]
-        sign = wraps.sign[use]
-        kind = wraps.kind[use]
-        if kind == CYLINDER:
-            contact, along = wrap_cylinder(
-                a, b, dimensions, axis, sign, geodesic, leave, meet
-            )
-        elif kind == ELLIPSOID:
-            method = wraps.method[use]
-            contact, along = wrap_ellipsoid(
-                a, b, dimensions, axis, sign, method, leave, meet
-            )
-        elif kind == SPHERE:
-            contact, along = wrap_sphere(
-                a, b, dimensions, axis, sign, leave, meet
-            )
-        else:
-            contact, along = wrap_torus(
-                a, b, dimensions, axis, sign, geodesic, leave, meet
-            )
-        if contact < POSSIBLE:
-            continue
-        longer = distance(a, leave) + along + distance(meet, b) - distance(a, b)
-        if contact == PIERCED or longer < least:
-            found, arc, least = k, along, longer
-            for i in range(3):
-                scratch.best[0, i] = scratch.best[1, i] = origin[i]
-                for j in range(3):
-                    scratch.best[0, i] += rotation[i, j] * leave[j]
-                    scratch.best[1, i] += rotation[i, j] * meet[j]
-        if contact == PIERCED:
-            break
-    return found, contact, arc
+) -> tuple[int, float, Vector, Vector]:
+    """Wrap one segment over a surface of any kind; results as of `wrap_cylinder`."""
+    if kind == CYLINDER:
+        return wrap_cylinder(first, second, dimensions, axis, sign, geodesic)
+    if kind == ELLIPSOID:
+        return wrap_ellipsoid(first, second, dimensions, axis, sign, method)
+    if kind == SPHERE:
+        return wrap_sphere(first, second, dimensions, axis, sign)
+    return wrap_torus(first, second, dimensions, axis, sign, geodesic)
 
 
 @njit(cache=True, error_model='numpy')
-def _move(point: Array, owner: NDArray[np.int64], arc: Array, old: int, new: int) -> None:
+def _move(point: Array, owner: IntArray, arc: Array, old: int, new: int) -> None:
     """Copy one entry of a path to another place."""
     owner[new], arc[new] = owner[old], arc[old]
     for i in range(3):
         point[new, i] = point[old, i]
 
 
-@njit(cache=True, error_model='numpy')
+@njit(cache=True, error_model='numpy', inline='always')
 def wrap_path(
-    wraps: WrapTable,
-    muscle: int,
-    body_rotation: Array,
-    body_position: Array,
+    kind: IntArray,
+    dimensions: Array,
+    axis: IntArray,
+    sign: IntArray,
+    surface: IntArray,
+    method: IntArray,
+    first: IntArray,
+    last: IntArray,
+    begin: int,
+    n_wraps: int,
+    geodesic: bool,
+    frame: Array,
+    order: IntArray,
+    contacts: IntArray,
     point: Array,
-    owner: NDArray[np.int64],
+    owner: IntArray,
     arc: Array,
     n: int,
-    scratch: Scratch,
 ) -> tuple[int, float]:
     """
     Insert the wrap points of one muscle into its path.
 
-    `owner` holds the number of a path point from 0, or ``-1 - use`` of a wrap point.
-    Returns the number of points and the length.
+    The first eight arguments are of `WrapTable`; `begin` and `n_wraps` are the muscle's uses,
+    `frame` is of `place_surfaces`.  `owner` holds the number of a path point from 0, or
+    ``-1 - use`` of a wrap point.  Returns the number of points and the length.
     """
-    begin, end = wraps.start[muscle], wraps.start[muscle + 1]
-    n_wraps = end - begin
-    order, contacts, best = scratch.order, scratch.contacts, scratch.best
-    rotation, origin = scratch.rotation, scratch.origin
     for place in range(n_wraps):
         order[place] = begin + place
         contacts[place] = MISSED
-    length = np.inf
-    geodesic = wraps.geodesic[0] or n_wraps > 1
+    length = math.inf
     for attempt in range(WRAP_ROUNDS if n_wraps > 1 else 1):
         for place in range(n_wraps):
             use = order[place]
-            for k in range(n - 1):
-                if owner[k] == -1 - use:
-                    for later in range(k + 2, n):
-                        _move(point, owner, arc, later, later - 2)
-                    n -= 2
+            if attempt > 0:
+                for k in range(n - 1):
+                    if owner[k] == -1 - use:
+                        for later in range(k + 2, n):
+                            _move(point, owner, arc, later, later - 2)
+                        n -= 2
+                        break
+            # Of the points that are there, the first and the last that the object counts for.
+            start, end = n, -1
+            for k in range(n):
+                if first[use] <= owner[k] <= last[use]:
+                    start, end = min(start, k), k
+            # The first segment that pierces the object is taken; otherwise the one whose wrap
+            # lengthens the path least.
+            of = surface[use]
+            size = dimensions[of, 0], dimensions[of, 1], dimensions[of, 2]
+            segment, contact, along, least = -1, MISSED, 0.0, math.inf
+            leave = meet = size
+            for k in range(start, end):
+                if owner[k] < 0 and owner[k] == owner[k + 1]:
+                    continue
+                a, b = into(frame, of, point, k), into(frame, of, point, k + 1)
+                contact, around, one, two = _wrap_segment(
+                    kind[of], a, b, size, axis[of], sign[of], method[use], geodesic
+                )
+                if contact < POSSIBLE:
+                    continue
+                longer = distance(a, one) + around + distance(two, b) - distance(a, b)
+                if contact == PIERCED or longer < least:
+                    segment, along, least, leave, meet = k, around, longer, one, two
+                if contact == PIERCED:
                     break
-            body = wraps.body[use]
-            for i in range(3):
-                for j in range(3):
-                    rotation[i, j] = 0.0
-                    for k in range(3):
-                        rotation[i, j] += (
-                            body_rotation[body, i, k] * wraps.rotation[use, k, j]
-                        )
-                origin[i] = body_position[body, i]
-                for k in range(3):
-                    origin[i] += body_rotation[body, i, k] * wraps.translation[use, k]
-            segment, contact, along = _best_wrap(
-                wraps, use, rotation, origin, point, owner, n, geodesic, scratch
-            )
             contacts[place] = contact
             if segment >= 0:
                 k = segment + 1
-                for later in range(n - 1, k - 1, -1):
+                for later in range(n - 1, segment, -1):
                     _move(point, owner, arc, later, later + 2)
-                for end_number in range(2):
-                    for i in range(3):
-                        point[k + end_number, i] = best[end_number, i]
-                    owner[k + end_number] = -1 - use
+                point[k, 0], point[k, 1], point[k, 2] = out_of(frame, of, leave)
+                point[k + 1, 0], point[k + 1, 1], point[k + 1, 2] = out_of(frame, of, meet)
+                owner[k] = owner[k + 1] = -1 - use
                 arc[k] = along
                 n += 2
         before = length

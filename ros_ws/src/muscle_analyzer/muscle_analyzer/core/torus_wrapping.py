@@ -8,18 +8,15 @@ tangent of its centre line at one point of it, and the segment passes this cylin
 the torus' hole.  The point is the one nearest to a point of the segment's line, which OpenSim
 seeks from both ends as the one closest to a circle of *twice* the radius of the centre line (its
 residual has a factor of two that the derivative of the distance has not); the same is done here,
-so that results agree.
+so that results agree.  OpenSim's least-squares search can end at a turning point of the residual
+that is not a zero of it, and so not nearest to anything; such points are not taken here.
 """
 
 import math
 
-import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-from muscle_analyzer.core.wrapping import POSSIBLE, wrap_cylinder
-
-Array = NDArray[np.float64]
+from muscle_analyzer.core.wrapping import NOWHERE, POSSIBLE, Vector, component, wrap_cylinder
 
 #: What a torus does to a segment that does not touch it. OpenSim reports it as wrapped without
 #: points, so that it never makes two surfaces change places (see `path_wrapping.wrap_path`).
@@ -54,50 +51,44 @@ def _root(
 
 @njit(cache=True, error_model='numpy')
 def nearest_of_ring(
-    first: Array, second: Array, radius: float, axis: int, sign: int, nearest: Array
-) -> bool:
+    first: Vector, second: Vector, radius: float, axis: int, sign: int
+) -> tuple[bool, float, float]:
     """
     Find the point of a circle about the z axis that a segment's line passes.
 
     Parameters
     ----------
     first, second
-        Ends of the segment (3,) [m].
+        Ends of the segment [m].
     radius
         Of the circle [m].
     axis, sign
         Half on which the point of the line must lie, as of `wrap_cylinder`.
-    nearest
-        Filled with the point of the circle (3,) [m].
 
     Returns
     -------
-    bool
+    found : bool
         Whether there is a point on the active half.
+    x, y : float
+        The point of the circle [m].
     """
-    direction = np.empty(3)
-    size = 0.0
-    for i in range(3):
-        direction[i] = second[i] - first[i]
-        size += direction[i] ** 2
-    size = math.sqrt(size)
+    x1, y1, z1 = first
+    dx, dy, dz = second[0] - x1, second[1] - y1, second[2] - z1
+    size = math.sqrt(dx * dx + dy * dy + dz * dz)
     if size == 0.0:
-        return False
-    base = 0.0
-    for i in range(3):
-        direction[i] /= size
-        base += first[i] * direction[i]
+        return False, 0.0, 0.0
+    dx, dy, dz = dx / size, dy / size, dz / size
+    base = x1 * dx + y1 * dy + z1 * dz
     reach = SEARCH_FACTOR * radius
-    c3 = first[0] * direction[0] + first[1] * direction[1]
-    c4 = direction[0] ** 2 + direction[1] ** 2
-    c5 = first[0] ** 2 + first[1] ** 2
-    roots = np.full(2, -base)
+    c3, c4, c5 = x1 * dx + y1 * dy, dx * dx + dy * dy, x1 * x1 + y1 * y1
+    root_1 = root_2 = -base
     if c4 > 0.0:
         outer = reach * math.sqrt(c4)
         centre, least = -c3 / c4, max(0.0, c5 - c3 * c3 / c4)
         turn_square = (reach * c4 * least) ** (2.0 / 3.0) - least
         if turn_square <= 0.0:
-            roots[:] = _root(-base - outer, -base + outer, base, reach, c3, c4, c5)
+            root_1 = _root(-base - outer, -base + outer, base, reach, c3, c4, c5)
+            root_2 = root_1
         else:
             # Between two turning points the slope falls: one nearest point on either side.
             left = centre - math.sqrt(turn_square / c4)
@@ -105,65 +96,47 @@ def nearest_of_ring(
             on_left = _slope(left, base, reach, c3, c4, c5) >= 0.0
             on_right = _slope(right, base, reach, c3, c4, c5) <= 0.0
             if on_left:
-                roots[:] = _root(min(left, -base - outer), left, base, reach, c3, c4, c5)
+                root_1 = _root(min(left, -base - outer), left, base, reach, c3, c4, c5)
+                root_2 = root_1
             if on_right:
-                at = _root(right, max(right, -base + outer), base, reach, c3, c4, c5)
-                roots[1] = at
+                root_2 = _root(right, max(right, -base + outer), base, reach, c3, c4, c5)
                 if not on_left:
-                    roots[0] = at
-    best = np.inf
-    for root in roots:
-        x, y, z = (
-            first[0] + root * direction[0],
-            first[1] + root * direction[1],
-            first[2] + root * direction[2],
-        )
+                    root_1 = root_2
+    found, best, nearest_x, nearest_y = False, math.inf, 0.0, 0.0
+    for root in (root_1, root_2):
+        x, y, z = x1 + root * dx, y1 + root * dy, z1 + root * dz
         from_axis = math.hypot(x, y)
-        place = x if axis == 0 else (y if axis == 1 else z)
         distance = math.hypot(from_axis - radius, z)
-        if from_axis > 0.0 and (sign == 0 or place * sign > 0.0) and distance < best:
-            best = distance
-            nearest[0], nearest[1] = radius * x / from_axis, radius * y / from_axis
-            nearest[2] = 0.0
-    return best < np.inf
+        active = sign == 0 or component((x, y, z), axis) * sign > 0.0
+        if from_axis > 0.0 and active and distance < best:
+            found, best = True, distance
+            nearest_x, nearest_y = radius * x / from_axis, radius * y / from_axis
+    return found, nearest_x, nearest_y
 
 
 @njit(cache=True, error_model='numpy')
 def wrap_torus(
-    first: Array,
-    second: Array,
-    dimensions: Array,
-    axis: int,
-    sign: int,
-    geodesic: bool,
-    tangent_first: Array,
-    tangent_second: Array,
-) -> tuple[int, float]:
+    first: Vector, second: Vector, dimensions: Vector, axis: int, sign: int, geodesic: bool
+) -> tuple[int, float, Vector, Vector]:
     """
     Wrap one segment over a torus about the z axis; arguments and results as `wrap_cylinder`.
 
     `dimensions` are the radius of the tube and that of its centre line [m].  A segment that is not
     wrapped is `PASSED`, any other `POSSIBLE`.
     """
-    centre = np.empty(3)
-    if not nearest_of_ring(first, second, dimensions[1], axis, sign, centre):
-        return PASSED, 0.0
+    found, x, y = nearest_of_ring(first, second, dimensions[1], axis, sign)
+    if not found:
+        return PASSED, 0.0, NOWHERE, NOWHERE
     # Axes of the cylinder: x to the centre of the hole, y down the torus' axis, z along the ring.
-    x0, x1 = -centre[0] / dimensions[1], -centre[1] / dimensions[1]
-    ends = np.empty((4, 3))
-    for k in range(2):
-        end = first if k == 0 else second
-        dx, dy = end[0] - centre[0], end[1] - centre[1]
-        ends[k, 0] = x0 * dx + x1 * dy
-        ends[k, 1] = -end[2]
-        ends[k, 2] = -x1 * dx + x0 * dy
-    tube = np.array([dimensions[0], CYLINDER_LENGTH, 0.0])
-    contact, arc = wrap_cylinder(ends[0], ends[1], tube, 0, 1, geodesic, ends[2], ends[3])
+    x0, x1 = -x / dimensions[1], -y / dimensions[1]
+    dx, dy = first[0] - x, first[1] - y
+    end_1 = x0 * dx + x1 * dy, -first[2], x0 * dy - x1 * dx
+    dx, dy = second[0] - x, second[1] - y
+    end_2 = x0 * dx + x1 * dy, -second[2], x0 * dy - x1 * dx
+    tube = dimensions[0], CYLINDER_LENGTH, 0.0
+    contact, arc, one, two = wrap_cylinder(end_1, end_2, tube, 0, 1, geodesic)
     if contact < POSSIBLE:
-        return PASSED, 0.0
-    for k in range(2):
-        tangent = tangent_first if k == 0 else tangent_second
-        tangent[0] = centre[0] + x0 * ends[2 + k, 0] - x1 * ends[2 + k, 2]
-        tangent[1] = centre[1] + x1 * ends[2 + k, 0] + x0 * ends[2 + k, 2]
-        tangent[2] = -ends[2 + k, 1]
-    return POSSIBLE, arc
+        return PASSED, 0.0, NOWHERE, NOWHERE
+    tangent_first = x + x0 * one[0] - x1 * one[2], y + x1 * one[0] + x0 * one[2], -one[1]
+    tangent_second = x + x0 * two[0] - x1 * two[2], y + x1 * two[0] + x0 * two[2], -two[1]
+    return POSSIBLE, arc, tangent_first, tangent_second

@@ -20,21 +20,29 @@ there are two constructions:
 
 import math
 
-import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+#: A point or a direction. Tuples, not arrays: compiled code keeps them in registers, and counts no
+#: references to them.
+Vector = tuple[float, float, float]
 
 #: What a surface does to one segment of a path: an end point lies inside; it is not met; it may
 #: be wrapped if no other segment is shorter; the segment pierces it and must wrap.
 INSIDE, MISSED, POSSIBLE, PIERCED = -1, 0, 1, 2
+#: What stands for the tangent points where there are none.
+NOWHERE = (0.0, 0.0, 0.0)
+
+
+@njit(cache=True, error_model='numpy')
+def component(vector: Vector, axis: int) -> float:
+    """Give one of the three components of a vector."""
+    return vector[0] if axis == 0 else (vector[1] if axis == 1 else vector[2])
 
 
 @njit(cache=True, error_model='numpy')
 def _apex_heights(
-    first: Array,
-    second: Array,
+    first: Vector,
+    second: Vector,
     radius: float,
     far: bool,
     tangents: tuple[float, float, float, float],
@@ -126,30 +134,26 @@ def _cylinder_sense(
 
 @njit(cache=True, error_model='numpy')
 def wrap_cylinder(
-    first: Array,
-    second: Array,
-    dimensions: Array,
+    first: Vector,
+    second: Vector,
+    dimensions: Vector,
     axis: int,
     sign: int,
     geodesic: bool,
-    tangent_first: Array,
-    tangent_second: Array,
-) -> tuple[int, float]:
+) -> tuple[int, float, Vector, Vector]:
     """
     Wrap one segment over a cylinder about the z axis.
 
     Parameters
     ----------
     first, second
-        Ends of the segment in the cylinder's frame (3,) [m].
+        Ends of the segment in the cylinder's frame [m].
     dimensions
         Radius and length [m].
     axis, sign
         Active half: coordinate 0 (x), 1 (y) or 2 (z) and its sign; sign 0 for the whole surface.
     geodesic
         Whether to take the geodesic or OpenSim's construction.
-    tangent_first, tangent_second
-        Filled with the tangent points (3,) [m].
 
     Returns
     -------
@@ -157,31 +161,34 @@ def wrap_cylinder(
         One of `INSIDE`, `MISSED`, `POSSIBLE`, `PIERCED`; the last two with tangent points.
     arc : float
         Length of the path on the surface [m].
+    tangent_first, tangent_second : Vector
+        Where the path meets the surface and where it leaves it [m].
     """
     radius = dimensions[0]
-    x1, y1, x2, y2 = first[0], first[1], second[0], second[1]
+    x1, y1, z1 = first
+    x2, y2, z2 = second
     square_1, square_2 = x1 * x1 + y1 * y1, x2 * x2 + y2 * y2
     if square_1 < radius * radius or square_2 < radius * radius:
-        return INSIDE, 0.0
+        return INSIDE, 0.0, NOWHERE, NOWHERE
     dx, dy = x2 - x1, y2 - y1
     square = dx * dx + dy * dy
     if square == 0.0:
-        return MISSED, 0.0
+        return MISSED, 0.0, NOWHERE, NOWHERE
 
     # Point of the segment's line closest to the axis.
     share = -(x1 * dx + y1 * dy) / square
     nearest_x, nearest_y = x1 + share * dx, y1 + share * dy
     pierced = 0.0 < share < 1.0 and nearest_x**2 + nearest_y**2 < radius * radius
     if sign == 0 and not pierced:
-        return MISSED, 0.0
+        return MISSED, 0.0, NOWHERE, NOWHERE
     contact = PIERCED if pierced else POSSIBLE
     if sign != 0:
-        active_1 = first[axis] * sign > 0.0
-        active_2 = second[axis] * sign > 0.0
-        nearest = first[axis] + share * (second[axis] - first[axis])
+        from_1, from_2 = component(first, axis), component(second, axis)
+        active_1, active_2 = from_1 * sign > 0.0, from_2 * sign > 0.0
+        nearest = from_1 + share * (from_2 - from_1)
         if active_1 or active_2:
             if not pierced and (active_1 == active_2 or nearest * sign > 0.0):
-                return MISSED, 0.0
+                return MISSED, 0.0, NOWHERE, NOWHERE
         else:
             contact = POSSIBLE
 
@@ -189,32 +196,27 @@ def wrap_cylinder(
     if sign == 0:
         sense = 1 if x1 * y2 - y1 * x2 > 0.0 else -1
     else:
-        sense = _cylinder_sense(one, two, axis, sign, (first[2], second[2]))
+        sense = _cylinder_sense(one, two, axis, sign, (z1, z2))
     left = one[0] * two[2] + one[1] * two[3]
     right = one[2] * two[0] + one[3] * two[1]
     # Whether the way round taken is not the one with the smaller angle.
     far = (sense == 1) == (left < right)
     if sense == 1:
-        tangent_first[0], tangent_first[1] = one[0], one[1]
-        tangent_second[0], tangent_second[1] = two[2], two[3]
+        tx1, ty1, tx2, ty2 = one[0], one[1], two[2], two[3]
     else:
-        tangent_first[0], tangent_first[1] = one[2], one[3]
-        tangent_second[0], tangent_second[1] = two[0], two[1]
-    across = tangent_first[0] * tangent_second[1] - tangent_first[1] * tangent_second[0]
-    turned = math.atan2(sense * across, left if sense == 1 else right)
+        tx1, ty1, tx2, ty2 = one[2], one[3], two[0], two[1]
+    turned = math.atan2(sense * (tx1 * ty2 - ty1 * tx2), left if sense == 1 else right)
     around = radius * (turned if turned >= 0.0 else turned + 2.0 * math.pi)
     if geodesic:
         # Straight in the unrolled surface: height grows evenly with the way seen along the axis.
         free_1 = math.sqrt(square_1 - radius * radius)
         free_2 = math.sqrt(square_2 - radius * radius)
-        slope = (second[2] - first[2]) / (free_1 + around + free_2)
-        tangent_first[2] = first[2] + slope * free_1
-        tangent_second[2] = second[2] - slope * free_2
+        slope = (z2 - z1) / (free_1 + around + free_2)
+        tz1, tz2 = z1 + slope * free_1, z2 - slope * free_2
     else:
-        xy = (tangent_first[0], tangent_first[1], tangent_second[0], tangent_second[1])
-        heights = _apex_heights(first, second, radius, far, xy)
-        tangent_first[2], tangent_second[2] = heights
+        tz1, tz2 = _apex_heights(first, second, radius, far, (tx1, ty1, tx2, ty2))
     half = 0.5 * dimensions[1]
-    if abs(tangent_first[2]) > half and abs(tangent_second[2]) > half:
-        return MISSED, 0.0
-    return contact, math.sqrt(around**2 + (tangent_second[2] - tangent_first[2]) ** 2)
+    if abs(tz1) > half and abs(tz2) > half:
+        return MISSED, 0.0, NOWHERE, NOWHERE
+    arc = math.sqrt(around**2 + (tz2 - tz1) ** 2)
+    return contact, arc, (tx1, ty1, tz1), (tx2, ty2, tz2)
