@@ -1,9 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Draw the figure of planning.md and print its table: `python -m docs.draw_planning`.
+"""Draw the figure of planning.md and print its tables: `python -m docs.draw_planning`.
 
-The two symmetric recordings of bags/ (simulated) are predicted with their recorded postures, and
-planned from the task alone: the same person, feet, places of the box and time.
+Three recordings of bags/ (simulated) are predicted with their recorded postures, and planned from
+the task alone: the same person, middle of the feet, places of the box and time. The symmetric ones
+are also planned in space.
 """
 
 from __future__ import annotations
@@ -16,18 +17,24 @@ import numpy as np
 from docs.draw_figures import BLUE, GREY, ORANGE, ROOT, STYLE, save
 from matplotlib.figure import Figure
 
-from human_model.motion import BodyMotion
+from human_model.motion import BodyMotion, Lift
+from lift_predictor.core.options import PredictorOptions
 from lift_predictor.core.planning.plan_task import PlanTask
 from lift_predictor.core.planning.planner import LiftPlanner
 from lift_predictor.core.planning.technique import stoop_squat_index
+from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.sagittal.comparison import COMPARED_JOINTS
 from lift_predictor.core.sagittal.parameters import JOINTS
+from lift_predictor.core.sagittal.prediction import PredictedLift2D
 from lift_predictor.core.sagittal.task import Box, LiftTask2D, build_task
+from lift_predictor.core.spatial.evaluation import lowering
+from lift_predictor.core.spatial.prediction import PredictedLift3D
+from lift_predictor.core.spatial.task import SpatialTask
 from lifting_bringup.bags.reader import BagReader
 from lifting_bringup.recorded_lifts import recorded_lifts
 from muscle_analyzer.core.analyzer import MuscleAnalyzer
 
-BAGS: Final = ('symmetric_7kg', 'symmetric_12kg')
+BAGS: Final = ('symmetric_7kg', 'symmetric_12kg', 'asymmetric_7kg')
 RECORDED: Final = 'recorded postures'
 PLANS: Final = {
     'planned, free': ('free', 'free'),
@@ -36,6 +43,9 @@ PLANS: Final = {
 }
 """Name in the table: technique and posture at the end; {technique}: that of the recording."""
 COLOURS: Final = (GREY, BLUE, '#6aa84f', ORANGE)
+COLUMNS: Final = (*COMPARED_JOINTS, 'spine turn')
+SPINE: Final = ('lumbar_extension', 'thorax_extension')
+TURN: Final = ('lumbar_rotation', 'thorax_rotation')
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,11 +60,27 @@ class Curve:
     shear: float
 
     def angles(self, share: np.ndarray) -> np.ndarray:
-        """Joint angles over the share of the lift (n, 6) [deg]."""
-        own = (self.motion.time - self.motion.time[0]) / np.ptp(self.motion.time)
-        columns = [self.motion.coordinates.index(joint) for joint in JOINTS]
-        q = self.motion.position[:, columns]
-        return np.degrees(np.stack([np.interp(share, own, column) for column in q.T], axis=1))
+        """Joint angles over the share of the lift, right and left (n, 7, 2) [deg]."""
+        motion = self.motion
+        own = (motion.time - motion.time[0]) / np.ptp(motion.time)
+
+        def total(*names: str) -> np.ndarray:
+            known = [name for name in names if name in motion.coordinates]
+            values = np.sum([motion.coordinate(name) for name in known], axis=0)
+            return np.interp(share, own, np.broadcast_to(values, own.shape))
+
+        columns = [(total(*SPINE),) * 2]
+        for joint in JOINTS[1:]:
+            columns.append(tuple(total(joint, f'{joint}_{side}') for side in 'rl'))
+        columns.append((total(*TURN),) * 2)
+        return np.degrees(np.transpose(columns, (2, 0, 1)))
+
+    def distance(self, other: Curve) -> str:
+        """RMSE of the joint angles to another lift, both sides together, as cells [deg]."""
+        share = np.linspace(0.0, 1.0, 101)
+        apart = self.angles(share) - other.angles(share)
+        rmse = np.sqrt((apart**2).mean(axis=(0, 2)))
+        return ' | '.join(f'{value:.0f}' for value in rmse)
 
 
 def box_of(bag: str) -> tuple[float, tuple[float, float, float]]:
@@ -83,30 +109,76 @@ def same_task(
     )  # fmt: skip
 
 
-def curves(bag: str) -> list[Curve]:
-    """Solve one recording in all ways."""
+def same_task_in_space(
+    recorded: SpatialTask, size: tuple[float, float, float], styles: tuple[str, str]
+) -> PlanTask:
+    """Describe a recorded task without its postures, seen from between its feet."""
+    hands = recorded.bounds.hand.reshape(2, 2, 3)
+    line = hands[:, 1] - hands[:, 0]
+    turns = np.arctan2(-line[:, 0], line[:, 1])
+    away, aside, up = recorded.parameters.box_from_hand
+    c, s = np.cos(turns), np.sin(turns)
+    offset = np.stack((c * away - s * aside, s * away + c * aside, np.full(2, up)), axis=1)
+    centres = hands.mean(axis=1) + offset
+    start, end = (
+        (float(x), float(y), max(float(z), 0.5 * size[2])) for x, y, z in centres
+    )
+    return PlanTask(
+        recorded.lift_id, float(recorded.bounds.box_mass[0]), size, start, end, (0.0, 0.0),
+        recorded.duration, *styles, (float(away), float(up)),
+    )  # fmt: skip
+
+
+def curves(bag: str) -> tuple[list[Curve], list[Curve]]:
+    """Solve one recording in all ways; and what was planned in the plane again in space."""
     mass, size = box_of(bag)
     recording = recorded_lifts(ROOT / 'bags' / bag)
     lift, subject = recording.lift(1).lift, recording.subject
     planner = LiftPlanner()
     planner.predictor.configure(subject)
     box = Box(mass=mass, depth=size[0])
-    task = build_task(planner.predictor.person, lift, box)
     predicted = planner.predictor.predict(lift, box)
-    best = predicted.optima[0].control[:1]
-    index = float(stoop_squat_index(best, task.person, task.parameters)[0])
+    if not predicted.report.ok:
+        raise SystemExit(f'{bag}: {predicted.report.message}')
+    in_space = isinstance(predicted, PredictedLift3D)
+
+    def plain(styles: tuple[str, str]) -> PlanTask:
+        if in_space:
+            return same_task_in_space(planner.predictor.spatial().task(lift, box), size, styles)
+        return same_task(build_task(planner.predictor.person, lift, box), size, styles)
+
     analyzer = MuscleAnalyzer()
     analyzer.configure(subject)
-    found = [_curve(RECORDED, predicted, index, analyzer)]
+    index = _index(planner, predicted, lift, box)
+    found, again = [_curve(RECORDED, predicted, index, analyzer)], []
     own = technique_of(index)
+    other = LiftPlanner(LiftPredictor(PredictorOptions(dimension='3d')))
     for name, styles in PLANS.items():
         technique, end = (style.format(technique=own) for style in styles)
-        planned = planner.plan(subject, same_task(task, size, (technique, end)))
-        if not planned.report.ok:
-            raise SystemExit(f'{bag}, {name}: {planned.report.message}')
         words = name.format(technique=own.replace('_', '-'))
-        found.append(_curve(words, planned.prediction, planned.index, analyzer))
-    return found
+        for kept, used in ((found, planner), (again, other)):
+            if used is other and in_space:
+                continue
+            planned = used.plan(subject, plain((technique, end)))
+            if not planned.report.ok:
+                raise SystemExit(f'{bag}, {name}: {planned.report.message}')
+            effort = planned.effort if planned.in_space else planned.report.objective
+            kept.append(_curve(words, planned.prediction, planned.index, analyzer, effort))
+    return found, again
+
+
+def _index(
+    planner: LiftPlanner, predicted: PredictedLift2D | PredictedLift3D, lift: Lift, box: Box
+) -> float:
+    """Stoop-Squat-Index of the first posture of a prediction."""
+    if isinstance(predicted, PredictedLift2D):
+        task = build_task(planner.predictor.person, lift, box)
+        first = predicted.optima[0].control[:1]
+        return float(stoop_squat_index(first, task.person, task.parameters)[0])
+    spatial = planner.predictor.spatial()
+    parameters = spatial.task(lift, box).parameters
+    hips, c7 = lowering(spatial.library, predicted.control[:1], parameters)
+    return 100.0 * (1.0 - float(hips[0] / c7[0]))
 
 
 def technique_of(index: float) -> str:
@@ -114,44 +186,63 @@ def technique_of(index: float) -> str:
     return 'squat' if index < 30.0 else 'stoop' if index > 90.0 else 'semi_squat'
 
 
-def _curve(name: str, prediction: object, index: float, analyzer: MuscleAnalyzer) -> Curve:
+def _curve(
+    name: str,
+    prediction: PredictedLift2D | PredictedLift3D,
+    index: float,
+    analyzer: MuscleAnalyzer,
+    effort: float | None = None,
+) -> Curve:
     motion = prediction.lift.motion
     analysis = analyzer.analyze(motion, 'lift', 'predicted')
     good = analysis.spine_status == 0
     return Curve(
-        name, motion, prediction.report.objective, index,
+        name, motion, prediction.report.objective if effort is None else effort, index,
         float(analysis.compression[good].max()), float(analysis.anterior_shear[good].max()),
     )  # fmt: skip
 
 
+def row_of(bag: str, curve: Curve, reference: Curve) -> str:
+    """One row of a table: distance to a reference, then loads."""
+    return (
+        f'| {bag} | {curve.name} | {curve.effort:.3f} | {curve.index:.0f} '
+        f'| {curve.distance(reference)} | {curve.compression:.0f} | {curve.shear:.0f} |'
+    )
+
+
 def main() -> None:
-    """Print the table and draw the figure."""
+    """Print the tables and draw the figure."""
     mpl.rcParams.update(STYLE)
     share = np.linspace(0.0, 1.0, 101)
-    figure = Figure(figsize=(10.0, 5.4))
-    axes = figure.subplots(len(BAGS), len(JOINTS), sharex=True)
-    joints = ' | '.join(COMPARED_JOINTS)
-    print(f'| recording | lift | effort s | index | {joints} | compression N | shear N |')
-    print('|---' * (6 + len(JOINTS)) + '|')
+    figure = Figure(figsize=(11.0, 7.4))
+    axes = figure.subplots(len(BAGS), len(COLUMNS), sharex=True)
+    joints = ' | '.join(COLUMNS)
+    head = (
+        f'| recording | lift | effort s | index | {joints} | compression N | shear N |\n'
+        f'{"|---" * (6 + len(COLUMNS))}|'
+    )
+    print(head)
+    second = []
     for row, bag in zip(axes, BAGS, strict=True):
-        found = curves(bag)
-        reference = found[0].angles(share)
+        found, again = curves(bag)
         for curve, colour in zip(found, COLOURS, strict=True):
+            print(row_of(bag, curve, found[0]), flush=True)
             angles = curve.angles(share)
-            rmse = np.sqrt(((angles - reference) ** 2).mean(axis=0))
-            distances = ' | '.join(f'{value:.0f}' for value in rmse)
-            print(f'| {bag} | {curve.name} | {curve.effort:.3f} | {curve.index:.0f} | {distances} '
-                  f'| {curve.compression:.0f} | {curve.shear:.0f} |', flush=True)
-            for axis, column in zip(row, angles.T, strict=True):
-                axis.plot(100.0 * share, column, color=colour, label=curve.name)
+            for axis, joint in zip(row, np.transpose(angles, (1, 2, 0)), strict=True):
+                axis.plot(100.0 * share, joint[0], color=colour, label=curve.name)
+                if np.abs(joint[1] - joint[0]).max() > 0.1:
+                    axis.plot(100.0 * share, joint[1], color=colour, linestyle='--')
+        # The plan in the plane is the reference of the same plan in space.
+        second += [row_of(bag, b, a) for a, b in zip(found[1:], again, strict=bool(again))]
         row[0].set_ylabel(f'{bag}\n[deg]')
-    for axis, joint in zip(axes[0], COMPARED_JOINTS, strict=True):
+    print(f'\nIn space against in the plane\n{head}', *second, sep='\n')
+    for axis, joint in zip(axes[0], COLUMNS, strict=True):
         axis.set_title(joint)
     for axis in axes[-1]:
         axis.set_xlabel('% of the lift')
     handles, labels = axes[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc='lower center', ncols=4, frameon=False)
-    figure.tight_layout(rect=(0.0, 0.07, 1.0, 1.0))
+    figure.tight_layout(rect=(0.0, 0.05, 1.0, 1.0))
     save(figure, 'planning_angles')
 
 
