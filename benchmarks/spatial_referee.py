@@ -70,13 +70,16 @@ class Referee:
         Task; other ones may differ in their bounds.
     x0 : array
         About where its Jacobian is probed for zeros.
+    barrier : float, optional
+        First barrier parameter; the predictor's if omitted.
     warm : bool
         Start from multipliers, as near to the bounds as our method does.
     """
 
     def __init__(
-        self, predictor: SpatialPredictor, task: SpatialTask, x0: Any, warm: bool = False
-    ) -> None:
+        self, predictor: SpatialPredictor, task: SpatialTask, x0: Any,
+        barrier: float | None = None, warm: bool = False,
+    ) -> None:  # fmt: skip
         self._predictor = predictor
         self.programme = p = spatial_programme(
             spatial_assembler(predictor.library, predictor.grid), predictor.grid,
@@ -125,7 +128,8 @@ class Referee:
             'grad_f': grad_f, 'jac_g': jac_g, 'hess_lag': hess_lag, 'no_nlp_grad': True,
             'print_time': False, 'error_on_fail': False, 'calc_lam_p': False,
             'ipopt.print_level': 0, 'ipopt.sb': 'yes',
-            'ipopt.tol': 1e-8, 'ipopt.max_iter': 400, 'ipopt.mu_init': predictor.options.barrier,
+            'ipopt.tol': 1e-8, 'ipopt.max_iter': 400,
+            'ipopt.mu_init': barrier or predictor.options.barrier,
         }  # fmt: skip
         if warm:
             push = predictor.options.warm_bound_push

@@ -30,7 +30,7 @@ from lift_predictor.core.solvers.optimum import (
     Progress,
     Start,
     best_first,
-    best_objective,
+    runs_until,
 )
 from lift_predictor.core.solvers.solution import InteriorPointOptions, Solution, Status
 from lift_predictor.core.solvers.solve import solve
@@ -147,13 +147,12 @@ class LiftOptimiser:
         where none converged. The deadline (on the clock of `time.perf_counter`) is a last resort:
         the run ends then, and no further start is begun.
         """
-        runs: list[Optimum] = []
-        for start in starts:
-            if runs and time.perf_counter() > deadline:
-                break
-            runs.append(self.solve(parameters, bounds, start, deadline=deadline))
-            if progress is not None:
-                progress(len(runs), len(starts), best_objective(runs))
+        runs = runs_until(
+            deadline,
+            lambda start: self.solve(parameters, bounds, start, deadline=deadline),
+            starts,
+            progress,
+        )
         if runs and all(run.outcome in NO_ANSWER for run in runs):
             runs.extend(self._by_ipopt(parameters, bounds, starts, deadline))
         return best_first(runs)

@@ -22,7 +22,7 @@ from lift_predictor.core.solvers.optimum import (
     Progress,
     Start,
     best_first,
-    best_objective,
+    runs_until,
 )
 
 Array = NDArray[np.float64]
@@ -145,13 +145,11 @@ class LiftSolver:
         where none converged. The first start always runs; later ones are left out after the
         deadline (on the clock of `time.perf_counter`).
         """
-        runs: list[Optimum] = []
-        for start in starts:
-            if not runs or time.perf_counter() < deadline:
-                runs.append(self.solve(parameters, bounds, start))
-                if progress is not None:
-                    progress(len(runs), len(starts), best_objective(runs))
-        return best_first(runs)
+        return best_first(
+            runs_until(
+                deadline, lambda start: self.solve(parameters, bounds, start), starts, progress
+            )
+        )
 
     def _binding(
         self, multipliers: Array, low: Array, high: Array

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -87,6 +88,35 @@ class Optimum:
     def as_start(self) -> Start:
         """Use the end of this run as a start."""
         return Start(self.start, self.control, self.box_mass, near=True)
+
+
+def runs_until(
+    deadline: float,
+    run: Callable[[Start], Optimum],
+    starts: Sequence[Start],
+    progress: Progress | None = None,
+) -> list[Optimum]:
+    """Run from every start in turn; none but the first is begun after the deadline.
+
+    Parameters
+    ----------
+    deadline : float
+        On the clock of `time.perf_counter` [s].
+    run : callable
+        The optimiser.
+    starts : sequence of Start
+        The most promising first.
+    progress : callable, optional
+        Told after each run; what it raises ends the work.
+    """
+    runs: list[Optimum] = []
+    for start in starts:
+        if runs and time.perf_counter() > deadline:
+            break
+        runs.append(run(start))
+        if progress is not None:
+            progress(len(runs), len(starts), best_objective(runs))
+    return runs
 
 
 def best_first(runs: Sequence[Optimum]) -> tuple[Optimum, ...]:
