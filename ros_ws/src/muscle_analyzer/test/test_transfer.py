@@ -113,6 +113,17 @@ def test_rates_without_filter_give_the_moment_of_splined_rates(scaled, subject, 
         assert np.abs(mapped - moment(poses[i].q, rate[i], acceleration[i])).max() <= 1.0
 
 
+def test_block_equals_samples_one_after_the_other(scaled, subject):
+    skeleton, motion = motions(subject)['twisted']
+    block = MotionTransfer(scaled, skeleton).block(motion)
+    transfer = MotionTransfer(scaled, skeleton)
+    for k in range(20):
+        pose = transfer.step(motion, k)
+        for name in ('q', 'qd', 'qdd', 'point_distance', 'frame_angle', 'iterations'):
+            assert np.array_equal(getattr(block, name)[k], getattr(pose, name)), name
+        assert block.limits(k) == pose.at_limit
+
+
 def test_scaled_model_has_the_subjects_joint_distances(scaled, subject):
     skeleton = Skeleton3D.of(subject)
     points = skeleton.points(np.zeros(len(skeleton.coordinates)))

@@ -226,18 +226,34 @@ def function_table(functions: Sequence[PiecewisePolynomial]) -> FunctionTable:
     return FunctionTable(first, lower, anchor, coefficient)
 
 
-@njit(cache=True)
-def evaluate(table: FunctionTable, f: int, x: float) -> tuple[float, float, float]:
-    """Return value, first and second derivative of function number `f` at `x`."""
-    piece = table.first_piece[f + 1] - 1
-    while x < table.lower[piece]:
+@njit(cache=True, error_model='numpy')
+def evaluated(
+    first_piece: NDArray[np.int64],
+    lower: Array,
+    anchor: Array,
+    coefficient: Array,
+    f: int,
+    x: float,
+) -> tuple[float, float, float]:
+    """Return value, first and second derivative of function number `f` of a table at `x`.
+
+    The arrays are those of `FunctionTable`.
+    """
+    piece = first_piece[f + 1] - 1
+    while x < lower[piece]:
         piece -= 1
-    dx = x - table.anchor[piece]
+    dx = x - anchor[piece]
     value = 0.0
     first = 0.0
     second = 0.0
-    for power in range(table.coefficient.shape[1] - 1, -1, -1):
+    for power in range(coefficient.shape[1] - 1, -1, -1):
         second = second * dx + 2.0 * first
         first = first * dx + value
-        value = value * dx + table.coefficient[piece, power]
+        value = value * dx + coefficient[piece, power]
     return value, first, second
+
+
+@njit(cache=True, error_model='numpy')
+def evaluate(table: FunctionTable, f: int, x: float) -> tuple[float, float, float]:
+    """Return value, first and second derivative of function number `f` at `x`."""
+    return evaluated(table.first_piece, table.lower, table.anchor, table.coefficient, f, x)

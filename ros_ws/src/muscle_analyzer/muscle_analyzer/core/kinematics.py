@@ -21,7 +21,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from muscle_analyzer.core.functions import evaluate
+from muscle_analyzer.core.functions import evaluated
 from muscle_analyzer.core.multibody import Tree
 
 Array = NDArray[np.float64]
@@ -73,7 +73,7 @@ class BodyState(NamedTuple):
     coordinate_gain: Array
 
 
-@njit(cache=True)
+@njit(cache=True, error_model='numpy')
 def coordinate_state(tree: Tree, q: Array, qd: Array, qdd: Array) -> CoordinateState:
     """Return all tree coordinates and their derivatives from the independent ones.
 
@@ -84,20 +84,19 @@ def coordinate_state(tree: Tree, q: Array, qd: Array, qdd: Array) -> CoordinateS
         Independent coordinates in rad or m, their rates and accelerations.
     """
     n = tree.independent.size
-    value = np.empty(n)
-    rate = np.zeros(n)
-    acceleration = np.zeros(n)
-    gain = np.zeros(n)
+    value, rate, acceleration, gain = np.empty(n), np.zeros(n), np.zeros(n), np.zeros(n)
+    # Plain arrays: to hand a tuple of them to a function costs more than the function.
+    first, lower, anchor, coefficient = tree.functions
+    independent, number = tree.independent, tree.coupling_function
     for i in range(n):
-        k = tree.independent[i]
-        if k < 0:
-            value[i] = evaluate(tree.functions, tree.coupling_function[i], 0.0)[0]
-            continue
-        f, f1, f2 = evaluate(tree.functions, tree.coupling_function[i], q[k])
+        k = independent[i]
+        x = q[k] if k >= 0 else 0.0
+        f, f1, f2 = evaluated(first, lower, anchor, coefficient, number[i], x)
         value[i] = f
-        gain[i] = f1
-        rate[i] = f1 * qd[k]
-        acceleration[i] = f1 * qdd[k] + f2 * qd[k] * qd[k]
+        if k >= 0:
+            gain[i] = f1
+            rate[i] = f1 * qd[k]
+            acceleration[i] = f1 * qdd[k] + f2 * qd[k] * qd[k]
     return CoordinateState(value, rate, acceleration, gain)
 
 
@@ -126,12 +125,11 @@ def turned(rotation: Array, vector: Array) -> Array:
     return out
 
 
-@njit(cache=True)
-def _turn_about(rotation: Array, axis: Array, angle: float) -> None:
+@njit(cache=True, error_model='numpy')
+def _turn_about(rotation: Array, x: float, y: float, z: float, angle: float) -> None:
     """Multiply a rotation matrix from the right by a turn about an axis of its own frame."""
     s = np.sin(angle)
     c = np.cos(angle)
-    x, y, z = axis
     for i in range(3):
         a, b, d = rotation[i, 0], rotation[i, 1], rotation[i, 2]
         along = (a * x + b * y + d * z) * (1.0 - c)
@@ -140,14 +138,27 @@ def _turn_about(rotation: Array, axis: Array, angle: float) -> None:
         rotation[i, 2] = c * d + along * z + s * (a * y - b * x)
 
 
-@njit(cache=True)
-def _product(a: Array, b: Array, out: Array) -> None:
-    for i in range(3):
-        for j in range(3):
-            out[i, j] = a[i, 0] * b[0, j] + a[i, 1] * b[1, j] + a[i, 2] * b[2, j]
+@njit(cache=True, error_model='numpy')
+def _moves(tree: Tree, x: CoordinateState, tree_gain: Array, gain: Array) -> Array:
+    """Return angle or distance of each motion with its time derivatives (n_e, 3); fill gains."""
+    first, lower, anchor, coefficient = tree.functions
+    coordinate, number = tree.motion_coordinate, tree.motion_function
+    value, rate, acceleration, x_gain = x
+    move = np.zeros((coordinate.size, 3))
+    for e in range(coordinate.size):
+        k = coordinate[e]
+        at = value[k] if k >= 0 else 0.0
+        f, f1, f2 = evaluated(first, lower, anchor, coefficient, number[e], at)
+        move[e, 0] = f
+        if k >= 0:
+            move[e, 1] = f1 * rate[k]
+            move[e, 2] = f1 * acceleration[k] + f2 * rate[k] * rate[k]
+            tree_gain[e] = f1
+            gain[e] = f1 * x_gain[k]
+    return move
 
 
-@njit(cache=True)
+@njit(cache=True, error_model='numpy')
 def forward_kinematics(tree: Tree, q: Array, qd: Array, qdd: Array) -> BodyState:
     """Return the motion of every body.
 
@@ -157,32 +168,18 @@ def forward_kinematics(tree: Tree, q: Array, qd: Array, qdd: Array) -> BodyState
     q, qd, qdd : (n_q,) arrays
         Independent coordinates in rad or m, their rates and accelerations.
     """
-    n_b = tree.parent.size
-    n_e = tree.motion_turns.size
+    parent, first_motion = tree.parent, tree.first_motion
+    turns, axis = tree.motion_turns, tree.motion_axis
+    parent_rotation, parent_translation = tree.parent_rotation, tree.parent_translation
+    child_rotation, child_translation = tree.child_rotation, tree.child_translation
+    n_b, n_e = parent.size, turns.size
     x = coordinate_state(tree, q, qd, qdd)
-    p = np.zeros((n_b, 3))
-    rot = np.zeros((n_b, 3, 3))
-    w = np.zeros((n_b, 3))
-    v = np.zeros((n_b, 3))
-    al = np.zeros((n_b, 3))
-    a = np.zeros((n_b, 3))
-    pivot = np.zeros((n_b, 3))
+    p, rot, pivot = np.zeros((n_b, 3)), np.zeros((n_b, 3, 3)), np.zeros((n_b, 3))
+    w, v = np.zeros((n_b, 3)), np.zeros((n_b, 3))
+    al, a = np.zeros((n_b, 3)), np.zeros((n_b, 3))
     screw = np.zeros((n_e, 6))
-    tree_gain = np.zeros(n_e)
-    gain = np.zeros(n_e)
-    # Angle or distance of each motion with its two time derivatives.
-    move = np.zeros((n_e, 3))
-    for e in range(n_e):
-        k = tree.motion_coordinate[e]
-        if k < 0:
-            move[e, 0] = evaluate(tree.functions, tree.motion_function[e], 0.0)[0]
-            continue
-        f, f1, f2 = evaluate(tree.functions, tree.motion_function[e], x.value[k])
-        move[e, 0] = f
-        move[e, 1] = f1 * x.rate[k]
-        move[e, 2] = f1 * x.acceleration[k] + f2 * x.rate[k] * x.rate[k]
-        tree_gain[e] = f1
-        gain[e] = f1 * x.gain[k]
+    tree_gain, gain = np.zeros(n_e), np.zeros(n_e)
+    move = _moves(tree, x, tree_gain, gain)
     frame = np.zeros((3, 3))
     r = np.zeros(3)
     r1 = np.zeros(3)
@@ -190,20 +187,28 @@ def forward_kinematics(tree: Tree, q: Array, qd: Array, qdd: Array) -> BodyState
     for i in range(3):
         rot[0, i, i] = 1.0
     for b in range(1, n_b):
-        m = tree.parent[b]
-        _product(rot[m], tree.parent_rotation[b], frame)
+        m = parent[b]
+        begin, end = first_motion[b], first_motion[b + 1]
         for i in range(3):
-            r[i] = 0.0
+            c0, c1, c2 = rot[m, i, 0], rot[m, i, 1], rot[m, i, 2]
+            for j in range(3):
+                frame[i, j] = (
+                    c0 * parent_rotation[b, 0, j]
+                    + c1 * parent_rotation[b, 1, j]
+                    + c2 * parent_rotation[b, 2, j]
+                )
+            r[i] = (
+                c0 * parent_translation[b, 0]
+                + c1 * parent_translation[b, 1]
+                + c2 * parent_translation[b, 2]
+            )
             r1[i] = 0.0
             r2[i] = 0.0
-            for j in range(3):
-                r[i] += rot[m, i, j] * tree.parent_translation[b, j]
-        for e in range(tree.first_motion[b], tree.first_motion[b + 1]):
-            if not tree.motion_turns[e]:
+        for e in range(begin, end):
+            if not turns[e]:
                 for i in range(3):
-                    s = 0.0
-                    for j in range(3):
-                        s += frame[i, j] * tree.motion_axis[e, j]
+                    s = frame[i, 0] * axis[e, 0]
+                    s += frame[i, 1] * axis[e, 1] + frame[i, 2] * axis[e, 2]
                     screw[e, 3 + i] = s
                     r[i] += s * move[e, 0]
                     r1[i] += s * move[e, 1]
@@ -219,12 +224,12 @@ def forward_kinematics(tree: Tree, q: Array, qd: Array, qdd: Array) -> BodyState
         az = a[m, 2] + ez + dz + r2[2]
         for i in range(3):
             pivot[b, i] = p[m, i] + r[i]
-        for e in range(tree.first_motion[b], tree.first_motion[b + 1]):
-            if tree.motion_turns[e]:
-                u = tree.motion_axis[e]
-                sx = frame[0, 0] * u[0] + frame[0, 1] * u[1] + frame[0, 2] * u[2]
-                sy = frame[1, 0] * u[0] + frame[1, 1] * u[1] + frame[1, 2] * u[2]
-                sz = frame[2, 0] * u[0] + frame[2, 1] * u[1] + frame[2, 2] * u[2]
+        for e in range(begin, end):
+            if turns[e]:
+                ux, uy, uz = axis[e, 0], axis[e, 1], axis[e, 2]
+                sx = frame[0, 0] * ux + frame[0, 1] * uy + frame[0, 2] * uz
+                sy = frame[1, 0] * ux + frame[1, 1] * uy + frame[1, 2] * uz
+                sz = frame[2, 0] * ux + frame[2, 1] * uy + frame[2, 2] * uz
                 mx, my, mz = cross3(pivot[b, 0], pivot[b, 1], pivot[b, 2], sx, sy, sz)
                 screw[e, 0], screw[e, 1], screw[e, 2] = sx, sy, sz
                 screw[e, 3], screw[e, 4], screw[e, 5] = mx, my, mz
@@ -236,11 +241,16 @@ def forward_kinematics(tree: Tree, q: Array, qd: Array, qdd: Array) -> BodyState
                 wx += sx * rate
                 wy += sy * rate
                 wz += sz * rate
-                _turn_about(frame, u, move[e, 0])
-        _product(frame, tree.child_rotation[b], rot[b])
-        t = tree.child_translation[b]
+                _turn_about(frame, ux, uy, uz, move[e, 0])
+        tx, ty, tz = child_translation[b, 0], child_translation[b, 1], child_translation[b, 2]
         for i in range(3):
-            r[i] = -(rot[b, i, 0] * t[0] + rot[b, i, 1] * t[1] + rot[b, i, 2] * t[2])
+            for j in range(3):
+                rot[b, i, j] = (
+                    frame[i, 0] * child_rotation[b, 0, j]
+                    + frame[i, 1] * child_rotation[b, 1, j]
+                    + frame[i, 2] * child_rotation[b, 2, j]
+                )
+            r[i] = -(rot[b, i, 0] * tx + rot[b, i, 1] * ty + rot[b, i, 2] * tz)
             p[b, i] = pivot[b, i] + r[i]
         cx, cy, cz = cross3(wx, wy, wz, r[0], r[1], r[2])
         dx, dy, dz = cross3(wx, wy, wz, cx, cy, cz)
