@@ -224,7 +224,7 @@ def random_lifts(
         violations += any(check.violation[name] > most for name, most in TOLERANCE.items())
         # Before margins for the time between the nodes, which the other answers have not.
         mine = min(run.solution.objective for run in prediction.optima if run.converged)
-        best = min(mine, *others(predictor, task, starts[0], k))
+        best = min((mine, *others(predictor, task, starts[0], k)))
         excess.append(mine / best - 1.0)
         if k < refereed:
             x0 = starts[0].variables()
