@@ -134,6 +134,13 @@ def _end_with_parent() -> None:
     _LIBC.prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
 
 
+def _own_signals() -> None:
+    _end_with_parent()
+    # A shell starts commands in the background with SIGINT ignored, which is inherited; `stop_all`
+    # needs it to be heard.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def start_module(
     name: str,
     module: str,
@@ -183,7 +190,8 @@ def start_module(
             stderr=subprocess.STDOUT,
             env=environment(),
             process_group=None if terminal else 0,
-            preexec_fn=_end_with_parent,  # noqa: PLW1509  (one system call, no locks)
+            # System calls, no locks.
+            preexec_fn=_end_with_parent if terminal else _own_signals,  # noqa: PLW1509
         )
     return NodeProcess(name, process, log)
 

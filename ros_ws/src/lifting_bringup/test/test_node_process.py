@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Environment and end of the node processes; no ROS."""
 
+import signal
 import subprocess
 import sys
 import time
@@ -97,16 +98,22 @@ except KeyboardInterrupt:
 """
 
 
+@pytest.mark.parametrize('inherited', [signal.default_int_handler, signal.SIG_IGN])
 def test_processes_that_do_not_end_are_broken_off_then_killed_side_by_side(
-    tmp_path, monkeypatch
+    tmp_path, monkeypatch, inherited
 ):
     monkeypatch.setattr(node_process, 'BREAK_OFF', 0.2)
     monkeypatch.setattr(node_process, 'STOP_TIMEOUT', 1.0)
     (tmp_path / 'stubborn.py').write_text(STUBBORN)
     monkeypatch.setenv('PYTHONPATH', str(tmp_path))
     kinds = {'busy': 'busy', 'deaf_1': 'deaf', 'deaf_2': 'deaf', 'deaf_3': 'deaf'}
-    processes = [start_module(name, 'stubborn', tmp_path, arguments=(kind,))
-                 for name, kind in kinds.items()]
+    # Ignored: as in a command that a shell has started in the background.
+    before = signal.signal(signal.SIGINT, inherited)
+    try:
+        processes = [start_module(name, 'stubborn', tmp_path, arguments=(kind,))
+                     for name, kind in kinds.items()]
+    finally:
+        signal.signal(signal.SIGINT, before)
     deadline = time.monotonic() + 30.0
     while any('ready' not in process.log.read_text() for process in processes):
         assert time.monotonic() < deadline
