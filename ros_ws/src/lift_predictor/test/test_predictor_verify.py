@@ -9,8 +9,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from lift_predictor.core.dense_grid import DENSITY
 from lift_predictor.core.sagittal.task import build_task
-from lift_predictor.core.sagittal.verify import DENSITY, verify
+from lift_predictor.core.sagittal.verify import verify
 
 
 @pytest.fixture(scope='module')

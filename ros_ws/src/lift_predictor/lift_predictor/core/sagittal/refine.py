@@ -17,10 +17,11 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from lift_predictor.core.dense_grid import DENSITY
 from lift_predictor.core.sagittal.grid import Grid
 from lift_predictor.core.sagittal.optimiser import LiftOptimiser
 from lift_predictor.core.sagittal.task import LiftTask2D
-from lift_predictor.core.sagittal.verify import DENSITY, Verification, verify
+from lift_predictor.core.sagittal.verify import Verification, verify
 from lift_predictor.core.solvers.optimum import Optimum
 
 Array = NDArray[np.float64]

@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from lift_predictor.core.dense_grid import DENSITY, near_nodes
 from lift_predictor.core.sagittal.evaluation import evaluate, sample
 from lift_predictor.core.sagittal.grid import NODE_UPPER, Grid, LiftBounds
 from lift_predictor.core.sagittal.kinematics import chain_positions
@@ -17,9 +18,6 @@ from lift_predictor.core.sagittal.parameters import JOINTS, LiftParameters
 from lift_predictor.core.sagittal.report_function import ReportFunction
 
 Array = NDArray[np.float64]
-
-DENSITY: Final = 10
-"""Dense points per node interval."""
 
 TOLERANCE: Final[dict[str, float]] = {
     'joint_angle [rad]': 1e-3,
@@ -131,14 +129,5 @@ def verify(
     values = np.hstack((loads.rows, q))
     low = np.concatenate((np.zeros(loads.rows.shape[1]), bounds.angle_lower))
     high = np.concatenate((NODE_UPPER, bounds.angle_upper))
-    excess = np.stack((_near_nodes(low - values), _near_nodes(values - high)))
+    excess = np.stack((near_nodes(low - values), near_nodes(values - high)))
     return Verification(len(s), violation, worst, excess)
-
-
-def _near_nodes(excess: Array) -> Array:
-    """Largest positive excess (n_nodes, n) within one interval of each node, from dense values."""
-    inside = np.maximum(excess[:-1].reshape(-1, DENSITY, excess.shape[1]).max(axis=1), 0.0)
-    nodes = np.zeros((len(inside) + 1, excess.shape[1]))
-    nodes[:-1] = inside
-    nodes[1:] = np.maximum(nodes[1:], inside)
-    return nodes

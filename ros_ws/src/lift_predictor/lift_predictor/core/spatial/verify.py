@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from lift_predictor.core.dense_grid import DENSITY, near_nodes
 from lift_predictor.core.solvers.library import NodeLibrary
 from lift_predictor.core.spatial.evaluation import SpatialLoads, evaluate, sample
 from lift_predictor.core.spatial.grid import (
@@ -34,9 +35,6 @@ from lift_predictor.core.spatial.parameters import (
 from lift_predictor.core.spatial.task import SpatialTask
 
 Array = NDArray[np.float64]
-
-DENSITY: Final = 10
-"""Dense points per node interval."""
 
 TOLERANCE: Final[dict[str, float]] = {
     'joint_angle [rad]': 1e-3,
@@ -184,7 +182,7 @@ def verify(
         violation[name] = value
         worst[name] = f'{labels[column]} at {100.0 * times[row]:.0f} %' if value > 0.0 else ''
     node_excess = _row_excess(loads, leg, p.sphere[:, 3] + p.box_radius, weight)
-    angle_excess = np.stack((_near_nodes(own[0] - limited), _near_nodes(limited - own[1])))
+    angle_excess = np.stack((near_nodes(own[0] - limited), near_nodes(limited - own[1])))
     return SpatialVerification(len(s), violation, worst, node_excess, angle_excess)
 
 
@@ -206,7 +204,7 @@ def _row_excess(
     low[:, row_slice(COLLISION_ROWS)] = -(((loads.gaps + reach) / reach) ** 2 - 1.0)
     low[:, row_slice(COLLISION_ROWS)][loads.gaps >= 0.0] = -np.inf
     low[:, row_slice(WAY_ROWS)] = -loads.inside / HAND_SCALE
-    return np.stack((_near_nodes(low), _near_nodes(high)))
+    return np.stack((near_nodes(low), near_nodes(high)))
 
 
 def _windows(
@@ -223,12 +221,3 @@ def _windows(
         weight * bounds.node_lower[:, start : start + 2] - force,
         force - weight * bounds.node_upper[:, start : start + 2],
     )
-
-
-def _near_nodes(excess: Array) -> Array:
-    """Largest positive excess (n_nodes, n) within one interval of each node, from dense values."""
-    inside = np.maximum(excess[:-1].reshape(-1, DENSITY, excess.shape[1]).max(axis=1), 0.0)
-    nodes = np.zeros((len(inside) + 1, excess.shape[1]))
-    nodes[:-1] = inside
-    nodes[1:] = np.maximum(nodes[1:], inside)
-    return nodes
