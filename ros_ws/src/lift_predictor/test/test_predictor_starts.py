@@ -12,9 +12,10 @@ import pytest
 from lift_predictor.core.bspline import RestToRestSpline
 from lift_predictor.core.sagittal.evaluation import evaluate
 from lift_predictor.core.sagittal.kinematics import chain_positions
-from lift_predictor.core.sagittal.lift_motion import mtp_torque, sample_times
+from lift_predictor.core.sagittal.lift_motion import mtp_torque
 from lift_predictor.core.sagittal.starts import make_starts, smooth_step
 from lift_predictor.core.sagittal.task import build_task
+from lift_predictor.core.sampling import sample_times
 
 SPLINE = RestToRestSpline(7)
 DENSE = np.linspace(0.0, 1.0, 61)

@@ -28,7 +28,7 @@ from lift_predictor.core.sagittal.feasibility import (
     missing_way,
     way_to,
 )
-from lift_predictor.core.sagittal.lift_motion import body_motion, mtp_torque, sample_times
+from lift_predictor.core.sagittal.lift_motion import body_motion, mtp_torque
 from lift_predictor.core.sagittal.optimiser import LiftOptimiser
 from lift_predictor.core.sagittal.outcome import judge
 from lift_predictor.core.sagittal.person import Person
@@ -38,6 +38,7 @@ from lift_predictor.core.sagittal.solved_lifts import library_starts
 from lift_predictor.core.sagittal.starts import make_starts
 from lift_predictor.core.sagittal.task import Box, LiftTask2D, build_task
 from lift_predictor.core.sagittal.verify import Verification
+from lift_predictor.core.sampling import sample_times
 from lift_predictor.core.solvers.optimum import Optimum, Progress, Start
 from lift_predictor.core.solvers.stop import StopFlag
 

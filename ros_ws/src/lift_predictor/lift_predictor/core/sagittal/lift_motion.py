@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,14 +17,6 @@ from lift_predictor.core.sagittal.parameters import JOINTS
 from lift_predictor.core.sagittal.task import LiftTask2D
 
 Array = NDArray[np.float64]
-
-SAMPLE_RATE: Final = 100.0
-"""Samples per second of a predicted motion, as of the recorded one (section 4.3)."""
-
-
-def sample_times(duration: float) -> Array:
-    """Return times from 0 to the duration [s], as near to `SAMPLE_RATE` as fits."""
-    return np.linspace(0.0, duration, max(round(duration * SAMPLE_RATE), 1) + 1)
 
 
 def mtp_torque(task: LiftTask2D, loads: SagittalLoads) -> Array:

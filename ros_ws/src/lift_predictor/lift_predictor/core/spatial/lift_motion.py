@@ -18,15 +18,8 @@ from lift_predictor.core.spatial.task import SpatialTask
 
 Array = NDArray[np.float64]
 
-SAMPLE_RATE: Final = 100.0
-"""Samples per second of a predicted motion, as of the recorded one (section 4.3)."""
 FREE: Final = 6
 """Coordinates of the free pelvis: no joints."""
-
-
-def sample_times(duration: float) -> Array:
-    """Return times from 0 to the duration [s], as near to `SAMPLE_RATE` as fits."""
-    return np.linspace(0.0, duration, max(round(duration * SAMPLE_RATE), 1) + 1)
 
 
 def body_motion(

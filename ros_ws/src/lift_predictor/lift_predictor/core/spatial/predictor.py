@@ -20,6 +20,7 @@ from human_model.subject import Subject
 from lift_predictor.core.exceptions import TaskError
 from lift_predictor.core.nearest_lift import HOPELESS, with_nearest
 from lift_predictor.core.sagittal.task import Box
+from lift_predictor.core.sampling import sample_times
 from lift_predictor.core.solvers.library import NodeLibrary
 from lift_predictor.core.solvers.solution import InteriorPointOptions, Solution, Status
 from lift_predictor.core.solvers.solve import solve
@@ -33,7 +34,6 @@ from lift_predictor.core.spatial.lift_motion import (
     body_motion,
     feet_moved,
     joint_torques,
-    sample_times,
 )
 from lift_predictor.core.spatial.multistart import Progress, runs_from
 from lift_predictor.core.spatial.person import COEFFICIENT_SET, SpatialPerson
