@@ -81,6 +81,7 @@ class OfflineGraph:
         self._tracker: MotionTracker | None = None
         self._predictor = LiftPredictor()
         self._analyzer = MuscleAnalyzer()
+        self._disc = muscle_messages.disc_frame_id(station)
         values = defaults('injury_monitor')
         self._monitor = InjuryMonitor(
             station,
@@ -189,7 +190,7 @@ class OfflineGraph:
         """Analyse a block; emit and return spine load, joint torques and muscle analysis."""
         status = quality_from_msg(message).status
         analysis = self._analyzer.analyze(motion, lift_id, source, status)
-        spine = muscle_messages.spine_load_to_msg(analysis, mass)
+        spine = muscle_messages.spine_load_to_msg(analysis, mass, self._disc)
         torques = muscle_messages.torques_to_msg(self._analyzer.joint_torques(analysis, motion))
         muscles = muscle_messages.analysis_to_msg(analysis)
         self._emit('spine_load', spine)
@@ -197,7 +198,7 @@ class OfflineGraph:
         self._emit('joint_reactions', muscle_messages.joint_reactions_to_msg(analysis))
         self._emit('muscle_analysis', muscles)
         if source == 'live':
-            for reaction in muscle_messages.reactions_to_msg(analysis):
+            for reaction in muscle_messages.reactions_to_msg(analysis, self._disc):
                 self._emit('l5_s1/reaction', reaction)
         return spine, torques, muscles
 

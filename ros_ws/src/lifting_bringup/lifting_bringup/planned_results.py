@@ -124,6 +124,8 @@ def _write_results(planned: PlannedLift, entry: TaskFile, path: Path) -> SpinePe
     torques = analyzer.joint_torques(analysis, motion)
     lift = predictor_messages.prediction_to_msg(prediction, None, subject)
     lift.maximum_weight = entry.task.box_mass is None
+    disc = muscle_messages.disc_frame_id(STATION)
+    spine = muscle_messages.spine_load_to_msg(analysis, prediction.box_mass, disc)
     with ResultsWriter(path, STATION) as writer:
         for topic, message in (
             ('subject', subject_to_msg(subject, 0.0, '', 'task file')),
@@ -131,7 +133,7 @@ def _write_results(planned: PlannedLift, entry: TaskFile, path: Path) -> SpinePe
             ('predicted_lift', lift),
             ('predicted_lift/joint_trajectory', predictor_messages.trajectory_to_msg(prediction)),
             ('muscle_analysis', muscle_messages.analysis_to_msg(analysis)),
-            ('spine_load', muscle_messages.spine_load_to_msg(analysis, prediction.box_mass)),
+            ('spine_load', spine),
             ('joint_torques', muscle_messages.torques_to_msg(torques)),
         ):
             writer.write(topic, message)
