@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from muscle_analyzer.core.disc_frame import DiscSetting, disc_rotation_of
 from muscle_analyzer.core.dual_newton import Columns
+from muscle_analyzer.core.held import Held
 from muscle_analyzer.core.inverse_dynamics import inverse_dynamics, wrench_at
 from muscle_analyzer.core.joint_loads import JointFrames, joint_loads
 from muscle_analyzer.core.joint_reaction import joint_reactions, net_moment
@@ -318,7 +319,7 @@ def _optimize(model: FrameModel, asked: Demand, warm: Array, out: FrameLoads, k:
 
 @njit(cache=True, error_model='numpy', nogil=True)
 def solve_frames(
-    model: FrameModel,
+    held: Held[FrameModel],
     q: Array,
     qd: Array,
     qdd: Array,
@@ -333,7 +334,7 @@ def solve_frames(
 
     Parameters
     ----------
-    model
+    held
         The model.
     q, qd, qdd : (n, n_q)
         Independent coordinates, rates and accelerations [rad or m, per s, per s^2].
@@ -349,6 +350,7 @@ def solve_frames(
     matrix : (n, n_c, n_m)
         With `ASK`, takes the torque of each muscle at full activation [N m]; zeros before.
     """
+    model = held.content
     for k in range(q.shape[0]):
         asked = demand(model, q[k], qd[k], qdd[k], external[k])
         out.wrong[k] = asked.wrong

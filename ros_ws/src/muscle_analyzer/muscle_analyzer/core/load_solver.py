@@ -29,6 +29,7 @@ from muscle_analyzer.core.frame import (
     no_loads,
     solve_frames,
 )
+from muscle_analyzer.core.held import hold
 from muscle_analyzer.core.joint_loads import JointLoad, JointLoadFrames, lumbosacral_body
 from muscle_analyzer.core.joint_reaction import NetMoment
 from muscle_analyzer.core.multibody import MultibodyModel
@@ -146,6 +147,7 @@ class LoadSolver:
             force_length_velocity=bool(options.force_length_velocity),
             passive_force=bool(options.passive_force),
         )
+        self._held = hold(self._frame)
 
     def reset(self) -> None:
         """Forget the state solved before."""
@@ -196,7 +198,7 @@ class LoadSolver:
         if self.optimization.criterion is Criterion.MIN_MAX:
             self._min_max(motion, out)
         else:
-            solve_frames(self._frame, *motion, WHOLE, self.optimization.start, out, _NOTHING)
+            solve_frames(self._held, *motion, WHOLE, self.optimization.start, out, _NOTHING)
             self._check(out)
         return out
 
@@ -252,8 +254,8 @@ class LoadSolver:
         """Solve states with the criterion that has an optimiser of its own."""
         n = len(out.wrong)
         matrix = np.zeros((n, len(self.coordinate_names), len(self.muscle_names)))
-        frame, optimization = self._frame, self.optimization
-        solve_frames(frame, *motion, ASK, optimization.start, out, matrix)
+        held, optimization = self._held, self.optimization
+        solve_frames(held, *motion, ASK, optimization.start, out, matrix)
         self._check(out)
         for k in range(n):
             outcome, found = optimization.share(matrix[k], out.to_balance[k])
@@ -261,7 +263,7 @@ class LoadSolver:
             out.multiplier[k], out.residual[k] = outcome.multiplier, outcome.residual
             out.iterations[k], out.converged[k] = outcome.iterations, outcome.converged
             out.weak[k], out.account[k] = outcome.weak, found
-        solve_frames(frame, *motion, ANSWER, optimization.start, out, matrix)
+        solve_frames(held, *motion, ANSWER, optimization.start, out, matrix)
 
     def _check(self, loads: FrameLoads) -> None:
         if loads.wrong.max(initial=-1) < 0:
