@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections import OrderedDict
 from typing import Final
 
@@ -32,6 +33,9 @@ from lifting_node.run import run_node
 
 KEPT_LIFTS: Final = 100
 """Lifts kept until subject and task are known, and afterwards for the action."""
+
+NICENESS: Final = 10
+"""Of the process: where cores are short, a prediction waits for the live samples of others."""
 
 
 class LiftPredictorNode(PipelineNode):
@@ -176,6 +180,7 @@ class LiftPredictorNode(PipelineNode):
 
 def main(args: list[str] | None = None) -> None:
     """Run the node."""
+    os.nice(NICENESS)
     run_node(LiftPredictorNode, args)
 
 
