@@ -121,8 +121,8 @@ class MuscleBalance:
         Dual solution, the warm start of the next frame [1 / (N m)].
     residual : (n_c,)
         What is not balanced [N m].
-    at_lower, at_upper : (n_m,) bool
-        Active sets.
+    low, full : (n_m,)
+        Activations up to and from which a muscle is at its lower and upper bound.
     unbalanced : tuple of str
         Coordinates whose muscles are too weak.
     report : SolveReport
@@ -133,10 +133,20 @@ class MuscleBalance:
     reserve: Array
     multiplier: Array
     residual: Array
-    at_lower: NDArray[np.bool_]
-    at_upper: NDArray[np.bool_]
+    low: Array
+    full: Array
     unbalanced: tuple[str, ...]
     report: SolveReport
+
+    @property
+    def at_lower(self) -> NDArray[np.bool_]:
+        """Muscles at their lower bound (n_m,)."""
+        return self.activation <= self.low
+
+    @property
+    def at_upper(self) -> NDArray[np.bool_]:
+        """Muscles at their upper bound (n_m,)."""
+        return self.activation >= self.full
 
     @property
     def converged(self) -> bool:
@@ -221,6 +231,9 @@ class StaticOptimization:
             max_iterations=int(self.options.max_iterations),
         )
         self.start = np.zeros(len(reserves))
+        # Where a muscle counts as at its bounds: not to be worked out for every frame.
+        self._low = self.actuators.lower + AT_BOUND
+        self._full = self.actuators.upper - AT_BOUND
 
     def reset(self) -> None:
         """Forget the previous frame."""
@@ -292,9 +305,9 @@ class StaticOptimization:
             reserve=outcome.reserve,
             multiplier=outcome.multiplier,
             residual=outcome.residual,
-            at_lower=outcome.activation <= self.actuators.lower + AT_BOUND,
-            at_upper=outcome.activation >= self.actuators.upper - AT_BOUND,
-            unbalanced=tuple(self.coordinate_names[j] for j in np.flatnonzero(outcome.weak)),
+            low=self._low,
+            full=self._full,
+            unbalanced=tuple([self.coordinate_names[j] for j in _places(outcome.weak)]),
             report=self.report(outcome, found, build_time, solve_time),
         )
 
@@ -353,20 +366,27 @@ class StaticOptimization:
                 f'static optimisation not converged: {self.coordinate_names[j]} is off by '
                 f'{outcome.residual[j]:.3g} N m'
             )
-        full = np.flatnonzero(outcome.activation >= self.actuators.upper - AT_BOUND)
+        full, weak = _places(outcome.activation >= self._full), _places(outcome.weak)
         bound = ''
-        if full.size:
-            bound = f'at full activation: {_some([self.muscle_names[i] for i in full])}'
-        if outcome.weak.any():
-            reserve = outcome.reserve
-            order = sorted(np.flatnonzero(outcome.weak), key=lambda j: -abs(reserve[j]))
-            parts = [f'{self.coordinate_names[j]} by {reserve[j]:.1f} N m' for j in order]
-            text = f'muscles too weak, reserves help {_some(parts)}'
-            return SolveStatus.MUSCLE_TOO_WEAK, f'{text}; {bound}' if bound else text
-        return SolveStatus.OK, bound
+        if full:
+            names = [self.muscle_names[i] for i in full[:NAMED]]
+            bound = f'at full activation: {_some(names, len(full))}'
+        if not weak:
+            return SolveStatus.OK, bound
+        reserve = outcome.reserve.tolist()
+        weak.sort(key=lambda j: -abs(reserve[j]))
+        parts = [f'{self.coordinate_names[j]} by {reserve[j]:.1f} N m' for j in weak[:NAMED]]
+        text = f'muscles too weak, reserves help {_some(parts, len(weak))}'
+        return SolveStatus.MUSCLE_TOO_WEAK, f'{text}; {bound}' if bound else text
 
 
-def _some(names: list[str]) -> str:
+def _places(condition: NDArray[np.bool_]) -> list[int]:
+    """Give where a condition holds."""
+    places: list[int] = condition.nonzero()[0].tolist()
+    return places
+
+
+def _some(first: list[str], count: int) -> str:
     """Give the first names in words and the number of the others: a report is to be read."""
-    more = f' and {len(names) - NAMED} more' if len(names) > NAMED else ''
-    return ', '.join(names[:NAMED]) + more
+    more = f' and {count - NAMED} more' if count > NAMED else ''
+    return ', '.join(first) + more
