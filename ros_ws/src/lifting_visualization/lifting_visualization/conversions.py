@@ -7,7 +7,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Point, Quaternion, TransformStamped, Vector3
 from lifting_interfaces.msg import SpineLoad
@@ -21,6 +20,7 @@ from lifting_node.stamps import to_seconds
 from lifting_visualization.core.exceptions import PictureError
 from lifting_visualization.core.link_frames import LinkFrames
 from lifting_visualization.core.shapes import Array, Kind, Shape
+from lifting_visualization.core.spine_loads import SpineLoads
 
 #: Bytes before the body of a serialised message.
 _HEAD = 4
@@ -77,18 +77,22 @@ def _quaternion(values: Sequence[float]) -> Quaternion:
 
 
 class TransformWriter:
-    """The serialised message of the moving links, of which only the numbers change.
+    """The serialised message of moving frames, of which only the numbers change.
 
     Setting and serialising 40 transforms field by field takes half of the node's processor time:
     the message is serialised once, and numbers and stamps are written where they are in it.
+
+    Parameters
+    ----------
+    parents, children : sequence of str, n
+        Names of the frames.
     """
 
-    def __init__(self, links: LinkFrames) -> None:
+    def __init__(self, parents: Sequence[str], children: Sequence[str]) -> None:
         message = TFMessage(transforms=[
-            _named(parent, child)
-            for parent, child in zip(links.parents, links.children, strict=True)])
+            _named(parent, child) for parent, child in zip(parents, children, strict=True)])
         # Numbers that occur nowhere else mark the places.
-        marks = 0.5 + np.arange(7.0 * len(links.children)).reshape(-1, 7)
+        marks = 0.5 + np.arange(7.0 * len(children)).reshape(-1, 7)
         for k, (entry, values) in enumerate(zip(message.transforms, marks.tolist(), strict=True)):
             entry.header.stamp = Time(sec=_MARK + k, nanosec=_MARK + k)
             place, turn = entry.transform.translation, entry.transform.rotation
@@ -129,18 +133,25 @@ def _named(parent: str, child: str) -> TransformStamped:
     return entry
 
 
-def compression_from_msg(message: SpineLoad) -> tuple[Array, Array, npt.NDArray[np.int64]]:
-    """Return stamps (n,) [s], compression (n,) [N] and statuses (n,).
+def loads_from_msg(message: SpineLoad) -> SpineLoads:
+    """Return the loads of a message; what is not good data is NaN.
 
     Raises
     ------
     PictureError
-        If the arrays have different lengths or are empty.
+        If the frame has no name, or the arrays do not fit to each other or are empty.
     """
     time = to_seconds(message.header.stamp) + np.asarray(message.time_from_start, np.float64)
     values = np.asarray(message.compression, np.float64)
     status = np.asarray(message.status, np.int64)
-    if not time.size or not time.size == values.size == status.size:
-        raise PictureError(f'spine_load: {time.size} times, {values.size} compressions, '
-                           f'{status.size} statuses')
-    return time, values, status
+    place = np.asarray(message.disc_position, np.float64)
+    turn = np.asarray(message.disc_orientation, np.float64)
+    n = time.size
+    if not n or (values.size, status.size, place.size, turn.size) != (n, n, 3 * n, 4 * n):
+        raise PictureError(f'spine_load: {n} times, {values.size} compressions, {status.size} '
+                           f'statuses, {place.size} numbers of disc_position, {turn.size} of '
+                           'disc_orientation')
+    if not message.header.frame_id:
+        raise PictureError('spine_load.header.frame_id: empty')
+    return SpineLoads(time, np.where(status == 0, values, np.nan), place.reshape(n, 3),
+                      turn.reshape(n, 4))

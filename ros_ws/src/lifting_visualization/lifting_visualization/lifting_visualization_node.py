@@ -6,18 +6,20 @@ from __future__ import annotations
 
 import time
 
+import numpy as np
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import PoseStamped
 from lifting_interfaces.msg import BodyMotion, MeasuredLift, PredictedLift, SpineLoad, Task
 from lifting_interfaces.msg import Subject as SubjectMsg
 from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
-from std_msgs.msg import String
+from std_msgs.msg import Header, String
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
 
 from human_model.errors import HumanModelError
 from lifting_node import qos
 from lifting_node.conversions import (
+    LABORATORY,
     lift_from_msg,
     motion_from_msg,
     quality_from_msg,
@@ -30,6 +32,7 @@ from lifting_visualization import conversions
 from lifting_visualization.core.drawing import SpineScale
 from lifting_visualization.core.exceptions import LiftingVisualizationError
 from lifting_visualization.core.shapes import Shape
+from lifting_visualization.core.spine_loads import SpineLoads
 from lifting_visualization.core.visualizer import Options, Visualizer
 
 #: Value of the parameter frame_prefix that means the namespace.
@@ -51,6 +54,7 @@ class LiftingVisualizationNode(PipelineNode):
                                    values['compression_length']),
             fresh=values['fresh'], pause=values['pause'], prefix=self._prefix()))
         self._writer: conversions.TransformWriter | None = None
+        self._disc: dict[str, conversions.TransformWriter] = {}
         # Last stamp of live motion and when it came, by the data's and by the machine's clock.
         self._last = (0.0, time.monotonic())
         self._shown = 0.0
@@ -88,7 +92,8 @@ class LiftingVisualizationNode(PipelineNode):
         self._writer = None
         another = self.visualizer.set_subject(subject_from_msg(message))
         if self.visualizer.links is not None:
-            self._writer = conversions.TransformWriter(self.visualizer.links)
+            links = self.visualizer.links
+            self._writer = conversions.TransformWriter(links.parents, links.children)
         if another:
             self._publish_person()
 
@@ -124,11 +129,22 @@ class LiftingVisualizationNode(PipelineNode):
         self._draw(self.visualizer.picture(motion, status), message.header.stamp)
 
     def _on_spine_load(self, message: SpineLoad) -> None:
-        load = conversions.compression_from_msg(message)
+        loads = conversions.loads_from_msg(message)
         if message.source == SpineLoad.LIVE:
-            self._draw(self.visualizer.load_picture(*load), message.header.stamp)
+            self._move_disc(message.header, loads)
+            self._draw(self.visualizer.load_picture(loads), message.header.stamp)
         elif message.source == SpineLoad.PREDICTED:
-            self.visualizer.set_predicted_load(message.lift_id, *load)
+            self.visualizer.set_predicted_load(message.lift_id, loads)
+
+    def _move_disc(self, header: Header, loads: SpineLoads) -> None:
+        """Publish where the disc's frame is, under the name that the loads have it by."""
+        place = np.concatenate([loads.position[-1], loads.orientation[-1]])
+        if not self.active or not self.values['transforms'] or not np.isfinite(place).all():
+            return
+        name = header.frame_id
+        if name not in self._disc:
+            self._disc = {name: conversions.TransformWriter([LABORATORY], [name])}
+        self._moving.publish(self._disc[name].message(header.stamp, place))
 
     def _on_measured_lift(self, message: MeasuredLift) -> None:
         self._draw(self.visualizer.set_measured(lift_from_msg(message)), self._now())

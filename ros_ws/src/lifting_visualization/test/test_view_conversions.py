@@ -57,7 +57,7 @@ def test_markers():
 @pytest.mark.parametrize('station', ['', 'a/', 'cell_3/', 'line_12_cell_3/'])
 def test_transforms(skeleton, station):
     links = LinkFrames(skeleton, station)
-    writer = conversions.TransformWriter(links)
+    writer = conversions.TransformWriter(links.parents, links.children)
     rng = np.random.default_rng(7)
     for stamp in (to_stamp(1.0), STAMP):
         values = links.transforms(skeleton.coordinates, rng.normal(size=40))
@@ -74,18 +74,44 @@ def test_transforms(skeleton, station):
     assert head.transform.translation.z == pytest.approx(skeleton.parameters.lengths['c7_height'])
 
 
-def test_compression_of_a_message():
-    message = SpineLoad(time_from_start=[0.0, 0.01], compression=[1.0, 2.0], status=[0, 301])
+def load_message():
+    """Return a message of two samples, the second not solved."""
+    message = SpineLoad(time_from_start=[0.0, 0.01], compression=[1.0, 2.0], status=[0, 301],
+                        disc_position=[0.1, 0.2, 0.9, 0.4, 0.5, 0.6],
+                        disc_orientation=[0.0, 0.6, 0.0, 0.8, 0.0, 0.0, 0.0, 1.0])
     message.header.stamp = STAMP
-    time, values, status = conversions.compression_from_msg(message)
-    np.testing.assert_allclose(time, [12.5, 12.51])
-    assert values.tolist() == [1.0, 2.0]
-    assert status.tolist() == [0, 301]
-    message.status = [0]
-    with pytest.raises(PictureError, match='2 times, 2 compressions, 1 statuses'):
-        conversions.compression_from_msg(message)
-    with pytest.raises(PictureError, match='0 times'):
-        conversions.compression_from_msg(SpineLoad())
+    message.header.frame_id = 'cell_3/l5_s1'
+    return message
+
+
+def test_loads_of_a_message():
+    loads = conversions.loads_from_msg(load_message())
+    np.testing.assert_allclose(loads.time, [12.5, 12.51])
+    np.testing.assert_array_equal(loads.compression, [1.0, np.nan])
+    np.testing.assert_array_equal(loads.position, [[0.1, 0.2, 0.9], [0.4, 0.5, 0.6]])
+    np.testing.assert_array_equal(loads.orientation[:, 1], [0.6, 0.0])
+    # Half the angle about the axis to the left has the sine 0.6: its whole has 0.96.
+    np.testing.assert_allclose(loads.normal, [[0.96, 0.0, 0.28], [0.0, 0.0, 1.0]], atol=1e-15)
+
+
+@pytest.mark.parametrize(('field', 'value', 'says'), [
+    ('status', [0], '2 times, 2 compressions, 1 statuses'),
+    ('compression', [1.0], '2 times, 1 compressions'),
+    ('time_from_start', [], '0 times'),
+    ('disc_position', [0.0] * 3, '3 numbers of disc_position, 8 of disc_orientation'),
+    ('disc_orientation', [], '6 numbers of disc_position, 0 of disc_orientation')])
+def test_loads_that_do_not_fit_are_named(field, value, says):
+    message = load_message()
+    setattr(message, field, value)
+    with pytest.raises(PictureError, match=says):
+        conversions.loads_from_msg(message)
+
+
+def test_loads_need_the_name_of_their_frame():
+    message = load_message()
+    message.header.frame_id = ''
+    with pytest.raises(PictureError, match='frame_id: empty'):
+        conversions.loads_from_msg(message)
 
 
 def test_type_of_tf_is_that_of_ros():

@@ -134,12 +134,49 @@ def test_person_motion_and_load(station, woman, motion_at):
     assert len(names) == 40
     assert 'cell_3/pelvis' in names
     assert ('l5_s1', 0) not in station.markers
-    load = SpineLoad(source=SpineLoad.LIVE, time_from_start=[0.0], compression=[6500.0],
-                     status=[0])
-    load.header.stamp = to_stamp(2.0)
-    station.send('spine_load', load)
+    station.send('spine_load', load_message(2.0))
     station.until(lambda: ('l5_s1', 1) in station.markers, 'the arrow of the load')
     assert station.markers['l5_s1', 1].text == '6500 N'
+
+
+def load_message(stamp, **fields):
+    """Return the message of a live load on a disc that leans forward by 30 degrees."""
+    half = np.deg2rad(15.0)
+    message = SpineLoad(**{
+        'source': SpineLoad.LIVE, 'time_from_start': [0.0], 'compression': [6500.0],
+        'status': [0], 'disc_position': [0.1, 0.02, 1.0],
+        'disc_orientation': [0.0, np.sin(half), 0.0, np.cos(half)]} | fields)
+    message.header.stamp = to_stamp(stamp)
+    message.header.frame_id = 'cell_3/l5_s1'
+    return message
+
+
+def test_tf_has_the_frame_that_loads_are_given_in(station, woman):
+    station.send('spine_load', load_message(2.0))
+    station.until(lambda: station.transforms, 'the frame of the disc')
+    (entry,) = station.transforms[-1].transforms
+    load = load_message(2.0)
+    assert (entry.header.frame_id, entry.child_frame_id) == ('world', load.header.frame_id)
+    assert entry.header.stamp == load.header.stamp
+    place, turn = entry.transform.translation, entry.transform.rotation
+    assert [place.x, place.y, place.z] == list(load.disc_position)
+    assert [turn.x, turn.y, turn.z, turn.w] == list(load.disc_orientation)
+    # The arrow stands on the disc and leans with it.
+    station.until(lambda: ('l5_s1', 0) in station.markers, 'the arrow of the load')
+    tail, tip = ([p.x, p.y, p.z] for p in station.markers['l5_s1', 0].points)
+    assert tip == pytest.approx([0.1, 0.02, 1.0])
+    assert np.subtract(tail, tip) == pytest.approx([0.325, 0.0, 0.65 * np.cos(np.pi / 6.0)])
+
+
+def test_a_disc_whose_place_is_not_known_stays_away(station, woman):
+    unknown = {'disc_position': [np.nan] * 3, 'disc_orientation': [np.nan] * 4}
+    station.send('spine_load', load_message(2.0, status=[305], **unknown))
+    station.send('spine_load', load_message(2.5, source=SpineLoad.MEASURED))
+    station.send('spine_load', load_message(3.0))
+    station.until(lambda: station.transforms, 'the frame of the disc')
+    station.spin(0.2)
+    (message,) = station.transforms
+    assert message.transforms[0].header.stamp == to_stamp(3.0)
 
 
 def test_a_sample_that_was_not_solved_moves_no_link(station, woman, motion_at):
@@ -181,6 +218,8 @@ def test_tf_can_be_left_to_robot_state_publisher(station, woman, motion_at):
     station.until(lambda: station.urdf, 'robot_description')
     station.send('body_motion', motion_message(motion_at(2.0)))
     station.until(lambda: ('person', 0) in station.markers, 'a picture')
+    station.send('spine_load', load_message(2.0))
+    station.until(lambda: ('l5_s1', 0) in station.markers, 'the arrow of the load')
     station.spin(0.2)
     assert station.transforms == station.fixed == []
 

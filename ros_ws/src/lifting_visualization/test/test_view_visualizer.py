@@ -11,10 +11,9 @@ from human_model.motion import Lift
 from human_model.report import SolveReport, SolveStatus
 from lifting_visualization.core.ghost import GHOST, GHOST_LOAD
 from lifting_visualization.core.shapes import Kind
+from lifting_visualization.core.spine_loads import SpineLoads
 from lifting_visualization.core.tables import colours
 from lifting_visualization.core.visualizer import GROUND, PATHS, PERSON, SPINE
-
-GOOD = np.zeros(1, np.int64)
 
 
 def by_place(shapes):
@@ -51,27 +50,37 @@ def test_what_was_not_solved_is_grey_and_has_no_forces(visualizer, motion_at):
     assert found[GROUND, 0].kind is found[GROUND, 1].kind is Kind.NOTHING
 
 
+def loads(time, compression):
+    """Return loads of n samples on a level disc that rises by 0.01 m a sample from 1 m."""
+    n = len(time)
+    position = np.zeros((n, 3))
+    position[:, 2] = 1.0 + 0.01 * np.arange(n)
+    return SpineLoads(np.asarray(time, float), np.asarray(compression, float), position,
+                      np.tile([0.0, 0.0, 0.0, 1.0], (n, 1)))
+
+
 def test_a_late_load_is_drawn_where_the_disc_was(visualizer, motion_at, skeleton):
-    first = motion_at(1.0)
-    visualizer.picture(first, 0)
+    visualizer.picture(motion_at(1.0), 0)
     q = skeleton.standing() + 0.1
     visualizer.picture(skeleton.body_motion(1.01, q, 0 * q, 0 * q), 0)
-    found = by_place(visualizer.load_picture(np.array([1.0]), np.array([3500.0]), GOOD))
-    np.testing.assert_allclose(found[SPINE, 0].points[1], first.point('l5_s1')[0])
+    leant = loads([1.0], [3500.0])._replace(
+        position=np.array([[0.2, -0.1, 0.9]]), orientation=np.array([[0.0, 0.6, 0.0, 0.8]]))
+    found = by_place(visualizer.load_picture(leant))
+    tail, tip = found[SPINE, 0].points
+    np.testing.assert_allclose(tip, [0.2, -0.1, 0.9])
+    np.testing.assert_allclose(tail - tip, 0.35 * np.array([0.96, 0.0, 0.28]), atol=1e-12)
     assert found[SPINE, 0].colour == colours()['above_action']
     assert found[SPINE, 1].text == '3500 N'
 
 
-def test_a_load_without_solution_or_motion_has_no_arrow(visualizer, motion_at):
-    assert visualizer.load_picture(np.array([1.0]), np.array([3500.0]), GOOD) == []
-    visualizer.picture(motion_at(1.0), 0)
-    shapes = visualizer.load_picture(np.array([1.0]), np.array([3500.0]), GOOD + 301)
+def test_a_load_that_is_not_good_has_no_arrow(visualizer):
+    shapes = visualizer.load_picture(loads([1.0], [np.nan]))
     assert {shape.kind for shape in shapes} == {Kind.NOTHING}
 
 
 def test_an_old_arrow_is_taken_away(visualizer, motion_at):
     visualizer.picture(motion_at(1.0), 0)
-    visualizer.load_picture(np.array([1.0]), np.array([3500.0]), GOOD)
+    visualizer.load_picture(loads([1.0], [3500.0]))
     assert (SPINE, 0) not in by_place(visualizer.picture(motion_at(1.1), 0))
     assert by_place(visualizer.picture(motion_at(1.3), 0))[SPINE, 0].kind is Kind.NOTHING
 
@@ -108,17 +117,18 @@ def test_load_of_the_predicted_lift_comes_before_or_after_it(visualizer, skeleto
     motion = lift(skeleton)
     steps = [lambda: visualizer.set_predicted('lift_002', motion, 10.0),
              lambda: visualizer.set_predicted_load(
-                 'lift_002', motion.time, np.linspace(3000.0, 4000.0, 11), np.zeros(11, int))]
+                 'lift_002', loads(motion.time, np.linspace(3000.0, 4000.0, 11)))]
     for step in steps[::-1] if load_first else steps:
         step()
     found = by_place(visualizer.ghost_picture(0.5))
     assert found[GHOST_LOAD, 1].text == '3500 N'
+    np.testing.assert_allclose(found[GHOST_LOAD, 0].points, [[0.0, 0.0, 1.4], [0.0, 0.0, 1.05]])
 
 
 def test_load_of_another_lift_is_not_shown(visualizer, skeleton):
     motion = lift(skeleton)
     visualizer.set_predicted('lift_001', motion, 10.0)
-    visualizer.set_predicted_load('lift_002', motion.time, np.full(11, 9e3), np.zeros(11, int))
+    visualizer.set_predicted_load('lift_002', loads(motion.time, np.full(11, 9e3)))
     assert by_place(visualizer.ghost_picture(0.5))[GHOST_LOAD, 0].kind is Kind.NOTHING
 
 

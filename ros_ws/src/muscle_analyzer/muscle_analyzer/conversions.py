@@ -28,6 +28,7 @@ from muscle_analyzer.core.torque_limits import JointTorques
 
 __all__ = [
     'analysis_to_msg',
+    'disc_frame_id',
     'joint_reactions_to_msg',
     'mass_in_hands',
     'motion_from_msg',
@@ -46,6 +47,12 @@ _SOURCES = {
     'measured': SpineLoadMsg.MEASURED,
     'predicted': SpineLoadMsg.PREDICTED,
 }
+
+
+def disc_frame_id(station: str) -> str:
+    """Return the name of the disc's frame on /tf, which all stations share: station_1/l5_s1."""
+    prefix = station.strip('/')
+    return f'{prefix}/{DISC}' if prefix else DISC
 
 
 def mass_in_hands(motion: BodyMotion, box_mass: float) -> float:
@@ -75,7 +82,9 @@ def analysis_to_msg(analysis: MuscleAnalysis) -> MuscleAnalysisMsg:
     return message
 
 
-def spine_load_to_msg(analysis: MuscleAnalysis, box_mass: float) -> SpineLoadMsg:
+def spine_load_to_msg(
+    analysis: MuscleAnalysis, box_mass: float, frame_id: str = DISC
+) -> SpineLoadMsg:
     """Return the message of the L5-S1 load, with its own statuses.
 
     Parameters
@@ -84,6 +93,8 @@ def spine_load_to_msg(analysis: MuscleAnalysis, box_mass: float) -> SpineLoadMsg
         Of a block.
     box_mass
         Mass in the hands [kg].
+    frame_id
+        Of the disc (`disc_frame_id`).
     """
     message = SpineLoadMsg(
         subject=analysis.pseudonym,
@@ -95,12 +106,14 @@ def spine_load_to_msg(analysis: MuscleAnalysis, box_mass: float) -> SpineLoadMsg
         net_moment=flat(analysis.net_moment_top_down),
         moment_difference=flat(np.linalg.norm(analysis.net_moment_difference, axis=1)),
         disc_frame=analysis.disc_frame,
+        disc_position=flat(analysis.disc_position),
+        disc_orientation=flat(analysis.disc_orientation),
         compression_per_degree=flat(analysis.compression_per_degree),
         anterior_shear_per_degree=flat(analysis.anterior_shear_per_degree),
         report=report_to_msg(analysis.spine_report),
     )
     _put_block(message, analysis, analysis.spine_status)
-    message.header.frame_id = DISC
+    message.header.frame_id = frame_id
     return message
 
 
@@ -132,8 +145,16 @@ def torques_to_msg(torques: JointTorques) -> JointTorquesMsg:
     return message
 
 
-def reactions_to_msg(analysis: MuscleAnalysis) -> list[WrenchStamped]:
-    """Return force of S1 on L5 and moment about the joint centre of each good sample."""
+def reactions_to_msg(analysis: MuscleAnalysis, frame_id: str = DISC) -> list[WrenchStamped]:
+    """Return force of S1 on L5 and moment about the joint centre of each good sample.
+
+    Parameters
+    ----------
+    analysis
+        Of a block.
+    frame_id
+        Of the disc (`disc_frame_id`).
+    """
     messages = []
     for k in np.flatnonzero(analysis.spine_status == 0):
         force, moment = (
@@ -142,7 +163,7 @@ def reactions_to_msg(analysis: MuscleAnalysis) -> list[WrenchStamped]:
         )
         message = WrenchStamped(wrench=Wrench(force=force, torque=moment))
         message.header.stamp = to_stamp(float(analysis.time[k]))
-        message.header.frame_id = DISC
+        message.header.frame_id = frame_id
         messages.append(message)
     return messages
 

@@ -73,6 +73,7 @@ class MuscleAnalyzerNode(PipelineNode):
             )
         )
         self.analyzer.prepare()
+        self._disc = conversions.disc_frame_id(self.get_namespace())
         self._subject: Subject | None = None
         self._box_mass = float('nan')
         # Topics overtake each other: motion may come before the person and the task it belongs to.
@@ -145,7 +146,7 @@ class MuscleAnalyzerNode(PipelineNode):
         self._publish(analysis, motion, mass)
         self.counts['live samples'] += len(analysis)
         self.counts['live samples with good L5-S1 load'] += analysis.good_spine_samples
-        for reaction in conversions.reactions_to_msg(analysis):
+        for reaction in conversions.reactions_to_msg(analysis, self._disc):
             self._reaction.publish(reaction)
         self._queue.work(LIFT_STEP)
         self._last_live = time.monotonic()
@@ -202,7 +203,7 @@ class MuscleAnalyzerNode(PipelineNode):
 
     def _publish(self, analysis: Analysis, motion: Motion, box_mass: float) -> None:
         """Publish all of an analysis, first what alarms hang on."""
-        self._spine.publish(conversions.spine_load_to_msg(analysis, box_mass))
+        self._spine.publish(conversions.spine_load_to_msg(analysis, box_mass, self._disc))
         torques = self.analyzer.joint_torques(analysis, motion)
         self._torques.publish(conversions.torques_to_msg(torques))
         self._muscles.publish(conversions.analysis_to_msg(analysis))

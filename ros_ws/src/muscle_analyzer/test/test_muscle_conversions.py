@@ -43,6 +43,8 @@ def analysis():
         torque=numbers(N, N_C),
         reserve=-numbers(N, N_C),
         disc_frame='bruno2015',
+        disc_position=0.1 * numbers(N, 3),
+        disc_orientation=np.array([[0.0, 0.6, 0.0, 0.8], [0.0, 0.0, 0.0, 1.0]]),
         l5_s1_force=np.array([[-300.0, 20.0, 3000.0], [-400.0, -10.0, 3500.0]]),
         l5_s1_moment=numbers(N, 3),
         joint_names=('l5_s1', 'hip_r'),
@@ -90,7 +92,7 @@ def test_muscle_analysis(analysis):
 
 
 def test_spine_load_has_its_own_status_and_signs(analysis):
-    message = conversions.spine_load_to_msg(analysis, 12.0)
+    message = conversions.spine_load_to_msg(analysis, 12.0, 'cell_3/l5_s1')
     check_block(message)
     assert list(message.compression) == [3000.0, 3500.0]
     assert list(message.anterior_shear) == [300.0, 400.0]
@@ -100,17 +102,26 @@ def test_spine_load_has_its_own_status_and_signs(analysis):
     assert list(message.status) == [0, 302]
     assert 'weak back' in message.report.message
     assert (message.subject, message.body_mass, message.box_mass) == ('p01', 63.5, 12.0)
-    assert (message.header.frame_id, message.disc_frame) == ('l5_s1', 'bruno2015')
+    assert (message.header.frame_id, message.disc_frame) == ('cell_3/l5_s1', 'bruno2015')
+    np.testing.assert_array_equal(message.disc_position, 0.1 * numbers(N * 3))
+    assert list(message.disc_orientation) == [0.0, 0.6, 0.0, 0.8, 0.0, 0.0, 0.0, 1.0]
     assert list(message.compression_per_degree) == [1.0, 2.0]
     assert list(message.anterior_shear_per_degree) == [3.0, 4.0]
 
 
+@pytest.mark.parametrize(('station', 'name'), [
+    ('/', 'l5_s1'), ('', 'l5_s1'), ('/cell_3', 'cell_3/l5_s1'), ('station_1', 'station_1/l5_s1'),
+    ('/hall/cell_3', 'hall/cell_3/l5_s1')])
+def test_frame_of_the_disc_has_the_name_of_the_station(station, name):
+    assert conversions.disc_frame_id(station) == name
+
+
 def test_reaction_only_of_good_samples(analysis):
-    (message,) = conversions.reactions_to_msg(analysis)
+    (message,) = conversions.reactions_to_msg(analysis, 'cell_3/l5_s1')
     force, torque = message.wrench.force, message.wrench.torque
     assert (force.x, force.y, force.z) == (-300.0, 20.0, 3000.0)
     assert (torque.x, torque.y, torque.z) == (1.0, 2.0, 3.0)
-    assert message.header.frame_id == 'l5_s1'
+    assert message.header.frame_id == 'cell_3/l5_s1'
     assert to_seconds(message.header.stamp) == pytest.approx(1000.25, abs=1e-6)
 
 

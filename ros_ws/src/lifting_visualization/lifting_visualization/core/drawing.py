@@ -65,13 +65,6 @@ def body(layer: str, names: tuple[str, ...], points: Array, colour: Colour) -> l
     ]
 
 
-def trunk(names: tuple[str, ...], points: Array) -> tuple[Array, Array]:
-    """Return the place (3,) of L5-S1 and the line (3,) from there to C7 [m]."""
-    _ends(names)
-    place = points[names.index('l5_s1')]
-    return place, points[names.index('c7')] - place
-
-
 def box(layer: str, place: Array, size: Array, orientation: Array) -> Shape:
     """Return a box at its centre [m]; nothing where the centre or the size is not known."""
     depth, width, height = size.tolist()
@@ -100,8 +93,8 @@ def compression(layer: str, place: Array, direction: Array, value: float,
                 scale: SpineScale) -> list[Shape]:
     """Return arrow and number of the compression [N] of a disc at its place (3,) [m].
 
-    `direction` (3,), of any length, points along the spine towards the head. The arrow points
-    into the disc from above: the load that the upper body puts on it. NaN gives nothing.
+    `direction` (3,), of any length, points along the disc's normal towards the head. The arrow
+    points into the disc from above: the load that the upper body puts on it. NaN gives nothing.
     """
     if not np.isfinite(value) or not np.any(direction):
         return [nothing(layer, 0), nothing(layer, 1)]

@@ -10,6 +10,7 @@ from human_model.motion import BodyMotion
 from lifting_visualization.core import drawing
 from lifting_visualization.core.drawing import SpineScale
 from lifting_visualization.core.shapes import Array, Shape, nothing
+from lifting_visualization.core.spine_loads import SpineLoads
 from lifting_visualization.core.tables import colours
 
 GHOST, GHOST_LOAD, GHOST_BOX = 'predicted', 'predicted_l5_s1', 'predicted_box'
@@ -39,13 +40,18 @@ class Ghost:
         self._pause = pause
         self._time = motion.time - motion.time[0]
         self._compression = np.full(len(motion), np.nan)
+        self._disc = np.full((len(motion), 6), np.nan)
 
-    def add_compression(self, time: Array, compression: Array) -> None:
-        """Take the compression (m,) [N] of the lift at stamps (m,) [s]."""
-        known = np.isfinite(compression)
-        if np.any(known):
-            self._compression = np.interp(self.motion.time, time[known], compression[known],
-                                          np.nan, np.nan)
+    def add_loads(self, loads: SpineLoads) -> None:
+        """Take the loads of the lift."""
+        known = np.isfinite(loads.compression)
+        if not np.any(known):
+            return
+        values = np.column_stack([loads.compression, loads.position, loads.normal])[known]
+        found = np.column_stack([
+            np.interp(self.motion.time, loads.time[known], column, np.nan, np.nan)
+            for column in values.T])
+        self._compression, self._disc = found[:, 0], found[:, 1:]
 
     def sample(self, elapsed: float) -> int:
         """Return the sample that is shown so long [s] after the first showing began."""
@@ -62,7 +68,7 @@ class Ghost:
         shapes = drawing.body(GHOST, names, points, colour)
         shapes.append(drawing.label(GHOST, 3, points[names.index('head')],
                                     f'optimal lift, {self.box_mass:.4g} kg', colour))
-        shapes += drawing.compression(GHOST_LOAD, *drawing.trunk(names, points),
+        shapes += drawing.compression(GHOST_LOAD, self._disc[k, :3], self._disc[k, 3:],
                                       float(self._compression[k]), scale)
         shapes.append(drawing.box(GHOST_BOX, motion.box_position[k], box_size, upright))
         return shapes

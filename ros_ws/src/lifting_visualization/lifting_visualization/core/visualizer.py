@@ -18,13 +18,12 @@ from lifting_visualization.core.drawing import SpineScale
 from lifting_visualization.core.ghost import Ghost, grips, no_ghost
 from lifting_visualization.core.link_frames import LinkFrames
 from lifting_visualization.core.shapes import Array, Shape, nothing
+from lifting_visualization.core.spine_loads import SpineLoads
 from lifting_visualization.core.tables import colours
 
 PERSON, BOX, GROUND, SPINE, PATHS = 'person', 'box', 'ground_force', 'l5_s1', 'hand_paths'
 #: Numbers in the layer of paths.
 MEASURED, PREDICTED = 0, 1
-#: Samples of which the place of the disc is kept until their load comes.
-KEPT = 1000
 
 
 @dataclass(frozen=True)
@@ -71,9 +70,8 @@ class Visualizer:
         self._box_size = np.zeros(3)
         self._box_orientation = np.array([0.0, 0.0, 0.0, 1.0])
         self._drawn = self._load_drawn = self._load_stamp = -np.inf
-        self._trunks: dict[int, tuple[Array, Array]] = {}
         self._lift_id = ''
-        self._loads: dict[str, tuple[Array, Array]] = {}
+        self._loads: dict[str, SpineLoads] = {}
 
     def set_subject(self, subject: Subject) -> bool:
         """Take the person; return whether it is another one than before.
@@ -90,7 +88,6 @@ class Visualizer:
         self.urdf = person_urdf(subject)
         self._subject = subject
         self._drawn = self._load_drawn = self._load_stamp = -np.inf
-        self._trunks.clear()
         self.ghost = None
         self._loads.clear()
         return True
@@ -103,19 +100,17 @@ class Visualizer:
         """Take the orientation xyzw of the box, world <- box."""
         self._box_orientation = np.asarray(quaternion, np.float64)
 
-    def load_picture(self, time: Array, compression: Array,
-                     status: npt.NDArray[np.int64]) -> list[Shape]:
-        """Return the arrow of live compressions (n,) [N]; where a status is not 0 there is none.
+    def load_picture(self, loads: SpineLoads) -> list[Shape]:
+        """Return the arrow of the last of live loads; without good data there is none.
 
         Loads come after the motion that they belong to: the arrow is drawn where the disc was.
         """
-        now = float(time[-1])
-        trunk = self._trunks.get(_key(now))
-        if trunk is None or not self._due(now, self._load_drawn):
+        now = float(loads.time[-1])
+        if not self._due(now, self._load_drawn):
             return []
         self._load_drawn = self._load_stamp = now
-        value = float(compression[-1]) if status[-1] == 0 else np.nan
-        return drawing.compression(SPINE, *trunk, value, self.options.compression)
+        return drawing.compression(SPINE, loads.position[-1], loads.normal[-1],
+                                   float(loads.compression[-1]), self.options.compression)
 
     def transforms(self, motion: BodyMotion) -> Array | None:
         """Return the places (n_q, 7) of the links in the last sample; None without a person.
@@ -141,9 +136,6 @@ class Visualizer:
         """
         now = float(motion.time[-1])
         points, names = motion.points[-1], motion.point_names
-        self._trunks[_key(now)] = drawing.trunk(names, points)
-        while len(self._trunks) > KEPT:
-            self._trunks.pop(next(iter(self._trunks)))
         if not self._due(now, self._drawn):
             return []
         self._drawn = now
@@ -177,26 +169,19 @@ class Visualizer:
         self.ghost = Ghost(motion, box_mass, self.options.pause)
         load = self._loads.pop(lift_id, None)
         if load is not None:
-            self.ghost.add_compression(*load)
+            self.ghost.add_loads(load)
         self._lift_id = lift_id
         return [drawing.path(PATHS, PREDICTED, grips(motion), colours()['predicted'])]
 
-    def set_predicted_load(self, lift_id: str, time: Array, compression: Array,
-                           status: npt.NDArray[np.int64]) -> None:
-        """Take compressions (n,) [N] of a predicted lift, which may come before it."""
-        load = (time, np.where(status == 0, compression, np.nan))
+    def set_predicted_load(self, lift_id: str, loads: SpineLoads) -> None:
+        """Take the loads of a predicted lift, which may come before it."""
         if self.ghost is not None and self._lift_id == lift_id:
-            self.ghost.add_compression(*load)
+            self.ghost.add_loads(loads)
         else:
-            self._loads = {lift_id: load}
+            self._loads = {lift_id: loads}
 
     def ghost_picture(self, elapsed: float) -> list[Shape]:
         """Return the predicted lift so long [s] after its showing began."""
         if self.ghost is None:
             return []
         return self.ghost.shapes(elapsed, self.options.compression, self._box_size)
-
-
-def _key(stamp: float) -> int:
-    """Return a stamp [s] in whole microseconds, as messages have it."""
-    return round(stamp * 1e6)

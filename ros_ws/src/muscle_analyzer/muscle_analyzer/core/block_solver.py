@@ -16,6 +16,7 @@ from human_model.report import SolveStatus
 from muscle_analyzer.core import verdict
 from muscle_analyzer.core.analyzer_options import MuscleAnalyzerOptions
 from muscle_analyzer.core.disc_frame import DEGREE
+from muscle_analyzer.core.disc_pose import world_poses
 from muscle_analyzer.core.frame import FrameLoads
 from muscle_analyzer.core.inverse_dynamics import add_force
 from muscle_analyzer.core.load_solver import LoadSolver
@@ -40,7 +41,14 @@ LOADED_SHARE = 0.05
 #: Standard acceleration of free fall [m/s^2] (CGPM 1901).
 GRAVITY = 9.80665
 #: What hangs on motion and forces, and what hangs on the optimisation as well.
-DYNAMICS = ('torque', 'net_moment_top_down', 'net_moment_bottom_up', 'pelvis_residual')
+DYNAMICS = (
+    'torque',
+    'disc_position',
+    'disc_orientation',
+    'net_moment_top_down',
+    'net_moment_bottom_up',
+    'pelvis_residual',
+)
 MUSCLES = (
     'activation',
     'force',
@@ -201,11 +209,14 @@ class BlockSolver:
         force = loads.joint_force[:, l5_s1].copy()
         net, residual = from_opensim(loads.net_moment), loads.pelvis_residual.reshape(-1, 2, 3)
         distance, angle = poses.point_distance, poses.frame_angle
+        disc_position, disc_orientation = world_poses(loads.disc_pose)
         return {
             'activation': loads.activation,
             'force': loads.force,
             'torque': loads.torque,
             'reserve': loads.reserve,
+            'disc_position': disc_position,
+            'disc_orientation': disc_orientation,
             'l5_s1_force': force,
             'l5_s1_moment': loads.joint_moment[:, l5_s1].copy(),
             'joint_force': loads.joint_force,

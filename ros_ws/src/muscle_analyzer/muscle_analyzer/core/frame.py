@@ -135,6 +135,8 @@ class FrameLoads(NamedTuple):
         See `Demand`; nothing else of such a frame is to be used.
     reaction : (n, 6)
         Moment about the L5-S1 joint's centre and force of S1 on L5 [N m, N].
+    disc_pose : (n, 3, 4)
+        Rotation ground <- L5-S1 disc, and in the last column the joint's centre [m].
     joint_force, joint_moment : (n, n_j, 3)
         Loads of all joints in their anatomical frames [N, N m]; L5-S1's are those of its disc.
     net_moment : (n, 2, 3)
@@ -156,6 +158,7 @@ class FrameLoads(NamedTuple):
     converged: BoolArray
     wrong: IntArray
     reaction: Array
+    disc_pose: Array
     joint_force: Array
     joint_moment: Array
     net_moment: Array
@@ -185,6 +188,7 @@ def no_loads(model: FrameModel, n: int) -> FrameLoads:
         converged=np.empty(n, np.bool_),
         wrong=np.empty(n, np.int64),
         reaction=np.empty((n, 6)),
+        disc_pose=np.empty((n, 3, 4)),
         joint_force=np.empty((n, n_j, 3)),
         joint_moment=np.empty((n, n_j, 3)),
         net_moment=np.empty((n, 2, 3)),
@@ -286,6 +290,10 @@ def add_reactions(
     reactions = joint_reactions(model.tree, asked.joint_wrench, pulls)
     knee = 0.5 * (q[model.knees[0]] + q[model.knees[1]])
     disc = disc_rotation_of(model.disc, state.rotation[l5], state.rotation[model.thorax], knee)
+    for i in range(3):
+        for j in range(3):
+            out.disc_pose[k, i, j] = disc[i, j]
+        out.disc_pose[k, i, 3] = state.joint_position[l5, i]
     joint_loads(
         model.joints, reactions, state.joint_position, state.rotation, disc,
         out.joint_force[k], out.joint_moment[k],

@@ -59,6 +59,10 @@ class MuscleAnalysis:
         Part of it that reserves took [N m].
     disc_frame : str
         Name of the source of the disc's orientation.
+    disc_position : (n, 3)
+        Centre of the L5-S1 joint of the musculoskeletal model, world frame (REP-103) [m].
+    disc_orientation : (n, 4)
+        Quaternion xyzw, world <- disc frame.
     l5_s1_force, l5_s1_moment : (n, 3)
         Of S1 on L5 about the joint centre, in the disc frame (anterior, left, cranial) [N, N m];
         compression is +z, anterior shear -x, lateral shear +y.
@@ -103,6 +107,8 @@ class MuscleAnalysis:
     torque: Array
     reserve: Array
     disc_frame: str
+    disc_position: Array
+    disc_orientation: Array
     l5_s1_force: Array
     l5_s1_moment: Array
     joint_names: tuple[str, ...]
