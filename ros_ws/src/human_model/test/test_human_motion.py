@@ -104,3 +104,47 @@ def test_lift_cuts_its_window(motion):
             Lift(**{**lift.__dict__, **changes})
     with pytest.raises(MotionError, match='no sample'):
         _ = Lift('7', 'measured', 5.0, 6.0, 7.0, motion, SolveReport()).window
+
+
+@pytest.mark.parametrize('samples', [1, 10])
+@pytest.mark.parametrize('name', ['position', 'points', 'frames', 'hand_force'])
+@pytest.mark.parametrize('value', [np.nan, np.inf, -np.inf])
+def test_a_value_that_is_not_finite_is_found_in_one_sample_and_in_many(
+        motion, samples, name, value):
+    changed = fields(motion[:samples])
+    changed[name] = changed[name].copy()
+    changed[name][-1].flat[-1] = value
+    with pytest.raises(MotionError, match=rf'motion\.{name}: not finite in sample {samples - 1}'):
+        BodyMotion.from_dict(changed)
+
+
+def test_values_whose_squares_are_beyond_all_numbers_are_finite(motion):
+    changed = {**fields(motion), 'velocity': np.full((10, 40), 1e200)}
+    assert np.all(BodyMotion.from_dict(changed).velocity == 1e200)
+
+
+@pytest.mark.parametrize('samples', [1, 10])
+@pytest.mark.parametrize(('length', 'refused'), [(0.9985, True), (0.9995, False),
+                                                 (1.0005, False), (1.0015, True)])
+def test_the_quaternion_farthest_from_a_rotation_is_named(motion, samples, length, refused):
+    changed = fields(motion[:samples])
+    changed['frames'] = changed['frames'].copy()
+    changed['frames'][-1, 2] *= length
+    if refused:
+        with pytest.raises(MotionError, match=f'a quaternion of length {length:.4f}'):
+            BodyMotion.from_dict(changed)
+    else:
+        assert len(BodyMotion.from_dict(changed)) == samples
+
+
+def test_what_the_caller_does_to_its_arrays_does_not_change_the_motion(motion):
+    changed = {name: np.array(value) for name, value in fields(motion).items()}
+    block = BodyMotion.from_dict(changed)
+    changed['points'][:] = 7.0
+    assert np.array_equal(block.points, motion.points)
+
+
+def test_a_motion_without_frames_or_points_is_one(motion):
+    changed = {**fields(motion[:1]), 'frame_names': (), 'frames': np.empty((1, 0, 4)),
+               'point_names': (), 'points': np.empty((1, 0, 3))}
+    assert BodyMotion.from_dict(changed).frames.shape == (1, 0, 4)

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from array import array
 from dataclasses import dataclass
 
@@ -56,7 +57,7 @@ class MotionQuality:
 
 def flat(values: npt.ArrayLike) -> array[float]:
     """Return values row-major in the form that rclpy takes without looking at each element."""
-    return array('d', np.ascontiguousarray(values, np.float64).tobytes())
+    return array('d', np.asarray(values, np.float64).tobytes())
 
 
 def report_to_msg(report: SolveReport) -> SolveReportMsg:
@@ -187,7 +188,7 @@ def motion_from_msg(message: BodyMotionMsg) -> BodyMotion:
     def shaped(values: array[float], *tail: int) -> Array:
         data = np.asarray(values, np.float64)
         shape = (n, *tail)
-        return data.reshape(shape) if data.size == int(np.prod(shape)) else data
+        return data.reshape(shape) if data.size == math.prod(shape) else data
 
     coordinates = tuple(message.coordinate_names)
     points = tuple(message.point_names)
