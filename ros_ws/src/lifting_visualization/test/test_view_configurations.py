@@ -65,7 +65,8 @@ def test_rviz_asks_for_what_is_offered():
     assert manager['Global Options']['Fixed Frame'] == 'world'
     displays = {display['Class'].rpartition('/')[2]: display for display in manager['Displays']}
     offered = {'MarkerArray': ('Topic', 'visualization', qos.VIEW),
-               'RobotModel': ('Description Topic', 'robot_description', qos.LATCHED)}
+               'RobotModel': ('Description Topic', 'robot_description', qos.LATCHED),
+               'Wrench': ('Topic', 'l5_s1/reaction', qos.FRAMES)}
     for name, (key, topic, profile) in offered.items():
         asked = displays[name][key]
         assert asked['Value'] == STATION + topic
