@@ -111,7 +111,7 @@ def test_rates_of_points_are_those_of_the_coordinates(pendulum):
         + np.cross(w[b], np.cross(w[b], arm)),
     )
     rate, again = map_rates(
-        pendulum.tree, targets, q, BOTH,
+        pendulum.tree, targets, q, state, BOTH,
         Rates(velocity, state.angular_velocity[2:], np.zeros(2)),
         Rates(acceleration, state.angular_acceleration[2:], np.zeros(2)),
     )

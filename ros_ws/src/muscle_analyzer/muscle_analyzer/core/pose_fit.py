@@ -26,6 +26,13 @@ from muscle_analyzer.core.kinematics import (
     turned,
 )
 from muscle_analyzer.core.multibody import Tree
+from muscle_analyzer.core.normal_equations import (
+    damped_part,
+    factorise,
+    normal_equations,
+    solution,
+    solve_factorised,
+)
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -108,6 +115,10 @@ class PoseFit(NamedTuple):
     step : float
         Largest coordinate change of the last step, rad or m.
     converged : bool
+    state : BodyState
+        Where the bodies are at these coordinates, at rest.
+    residual : (3 n_p + 3 n_f,) array
+        Their `misfit`.
     """
 
     q: Array
@@ -115,6 +126,8 @@ class PoseFit(NamedTuple):
     cost: float
     step: float
     converged: bool
+    state: BodyState
+    residual: Array
 
 
 @njit(cache=True)
@@ -180,32 +193,6 @@ def misfit_jacobian(tree: Tree, targets: Targets, state: BodyState) -> Array:
 
 
 @njit(cache=True)
-def _solve_positive(matrix: Array, right: Array) -> Array:
-    """Solve a positive definite system by Cholesky's method; NaN if it is not. Changes both."""
-    n = right.size
-    for j in range(n):
-        for k in range(j):
-            matrix[j, j] -= matrix[j, k] * matrix[j, k]
-        if not matrix[j, j] > 0.0:
-            right[:] = np.nan
-            return right
-        matrix[j, j] = np.sqrt(matrix[j, j])
-        for i in range(j + 1, n):
-            for k in range(j):
-                matrix[i, j] -= matrix[i, k] * matrix[j, k]
-            matrix[i, j] /= matrix[j, j]
-    for i in range(n):
-        for k in range(i):
-            right[i] -= matrix[i, k] * right[k]
-        right[i] /= matrix[i, i]
-    for i in range(n - 1, -1, -1):
-        for k in range(i + 1, n):
-            right[i] -= matrix[k, i] * right[k]
-        right[i] /= matrix[i, i]
-    return right
-
-
-@njit(cache=True)
 def _bounded_step(
     normal: Array,
     gradient: Array,
@@ -227,22 +214,22 @@ def _bounded_step(
         n = index.size
         if n == 0:
             return step
-        matrix = np.empty((n, n))
         right = np.empty(n)
         for i in range(n):
             right[i] = -gradient[index[i]]
             for k in range(n_q):
                 if not moving[k]:
                     right[i] -= normal[index[i], k] * step[k]
-            for j in range(n):
-                matrix[i, j] = normal[index[i], index[j]]
-            matrix[i, i] += damping
-        solution = _solve_positive(matrix, right)
+        factor = damped_part(normal, index, damping)
+        if factorise(factor):
+            solve_factorised(factor, right)
+        else:
+            right[:] = np.nan
         stopped = False
         for i in range(n):
             k = index[i]
-            step[k] = min(max(solution[i], lowest[k]), highest[k])
-            if step[k] != solution[i]:
+            step[k] = min(max(right[i], lowest[k]), highest[k])
+            if step[k] != right[i]:
                 moving[k] = False
                 stopped = True
         if not stopped:
@@ -295,8 +282,7 @@ def fit_pose(
     flat = 0
     for iteration in range(1, max_iterations + 1):
         jacobian = misfit_jacobian(tree, targets, state)
-        normal = jacobian.T @ jacobian
-        gradient = jacobian.T @ residual
+        normal, gradient = normal_equations(jacobian, residual)
         for k in range(n_q):
             weight = targets.reference_weight[k] ** 2
             normal[k, k] += weight
@@ -319,22 +305,21 @@ def fit_pose(
                 elif step[k] == lower[k] - q[k]:
                     trial[k] = lower[k]
             size = np.max(np.abs(trial - q))
-            state = forward_kinematics(tree, trial, zero, zero)
-            residual = misfit(targets, state)
-            trial_cost = _cost(targets, residual, trial)
+            there = forward_kinematics(tree, trial, zero, zero)
+            left = misfit(targets, there)
+            trial_cost = _cost(targets, left, trial)
             if trial_cost <= cost or size < tolerance:
                 break
             if not np.isfinite(relative_damping):
-                return PoseFit(q, iteration, cost, size, False)
+                return PoseFit(q, iteration, cost, size, False, state, residual)
             relative_damping *= _DAMPING_UP
         relative_damping = max(relative_damping * _DAMPING_DOWN, _SMALLEST_DAMPING)
         flat = flat + 1 if cost - trial_cost < FLAT_COST else 0
         if trial_cost <= cost:
-            q = trial
-            cost = trial_cost
+            q, state, residual, cost = trial, there, left, trial_cost
         if size < tolerance or flat == FLAT_STEPS:
-            return PoseFit(q, iteration, cost, size, True)
-    return PoseFit(q, max_iterations, cost, size, False)
+            return PoseFit(q, iteration, cost, size, True, state, residual)
+    return PoseFit(q, max_iterations, cost, size, False, state, residual)
 
 
 @njit(cache=True)
@@ -342,6 +327,7 @@ def map_rates(
     tree: Tree,
     targets: Targets,
     q: Array,
+    state: BodyState,
     fitted: NDArray[np.bool_],
     velocity: Rates,
     acceleration: Rates,
@@ -358,6 +344,8 @@ def map_rates(
         Their places are not used.
     q : (n_q,) array
         The fitted coordinates.
+    state : BodyState
+        Where the bodies are at these.
     fitted : (n_q,) bool array
     velocity, acceleration : Rates
         Of the points, frames and reference values.
@@ -365,25 +353,24 @@ def map_rates(
     n_q = q.size
     n_p = targets.point_body.size
     n_f = targets.frame_body.size
-    zero = np.zeros(n_q)
-    state = forward_kinematics(tree, q, zero, zero)
     jacobian = misfit_jacobian(tree, targets, state)
-    normal = jacobian.T @ jacobian
-    damping = _SMALLEST_DAMPING * np.trace(normal) / n_q
-    pull = targets.reference_weight**2
-    for k in range(n_q):
-        normal[k, k] += pull[k]
     wanted = np.empty(3 * (n_p + n_f))
     for i in range(n_p):
         wanted[3 * i : 3 * i + 3] = targets.point_weight[i] * velocity.point[i]
     for i in range(n_f):
         at = 3 * (n_p + i)
         wanted[at : at + 3] = targets.frame_weight[i] * velocity.frame[i]
-    right = jacobian.T @ wanted + pull * velocity.reference
-    unbounded = np.full(n_q, np.inf)
-    rate = _bounded_step(normal, -right, fitted, damping, -unbounded, unbounded)
+    normal, right = normal_equations(jacobian, wanted)
+    damping = _SMALLEST_DAMPING * np.trace(normal) / n_q
+    pull = targets.reference_weight**2
+    for k in range(n_q):
+        normal[k, k] += pull[k]
+    index = np.flatnonzero(fitted)
+    factor = damped_part(normal, index, damping)
+    solved = factorise(factor)
+    rate = solution(factor, solved, index, right + pull * velocity.reference)
     # With zero coordinate accelerations the points' accelerations are J' q'.
-    moving = forward_kinematics(tree, q, rate, zero)
+    moving = forward_kinematics(tree, q, rate, np.zeros(n_q))
     for i in range(n_p):
         bias = point_acceleration(moving, targets.point_body[i], targets.point_local[i])
         wanted[3 * i : 3 * i + 3] = targets.point_weight[i] * (acceleration.point[i] - bias)
@@ -392,4 +379,4 @@ def map_rates(
         bias = moving.angular_acceleration[targets.frame_body[i]]
         wanted[at : at + 3] = targets.frame_weight[i] * (acceleration.frame[i] - bias)
     right = jacobian.T @ wanted + pull * acceleration.reference
-    return rate, _bounded_step(normal, -right, fitted, damping, -unbounded, unbounded)
+    return rate, solution(factor, solved, index, right)

@@ -18,20 +18,19 @@ say where in the laboratory. A turn about the vertical and a shift lead from the
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from human_model.frames import matrix_from_quaternion
 from human_model.motion import FRAMES, POINTS, BodyMotion
 from human_model.skeleton import Skeleton
 from muscle_analyzer.core.body_points import upright_coordinates
 from muscle_analyzer.core.exceptions import TransferError
+from muscle_analyzer.core.held import hold
 from muscle_analyzer.core.pose_fit import Targets
 from muscle_analyzer.core.subject_model import SubjectModel
 from muscle_analyzer.core.transfer_frames import (
-    TransferredFrames,
+    SkeletonMotion,
     TransferSetup,
     transfer_frames,
 )
@@ -153,7 +152,6 @@ class MotionTransfer:
         }
         bounded = fitted & np.array([clamped[name] for name in names])
         which_points = _positions(points.names, POINTS)
-        self._columns = cache(_positions)
         self._setup = TransferSetup(
             tree=model.tree,
             skeleton=skeleton.tree,
@@ -189,6 +187,10 @@ class MotionTransfer:
             tolerance=TOLERANCE,
             max_iterations=MAX_ITERATIONS,
         )
+        # Turned over to the compiled functions once; a motion's columns while its names stay.
+        self._held = hold(self._setup)
+        self._given: tuple[tuple[str, ...], ...] = ()
+        self._columns = (which_points, which_points)
         self._start = np.full(len(names), np.nan)
 
     def reset(self) -> None:
@@ -216,40 +218,34 @@ class MotionTransfer:
                 f'{self.skeleton.name!r}'
             )
         points = self.subject.points
-        names = self.subject.multibody.coordinate_names
-        place = motion.points[samples, self._columns(points.names, motion.point_names)]
-        frames = matrix_from_quaternion(
-            motion.frames[samples, self._columns(points.frame_names, motion.frame_names)]
+        given = (motion.point_names, motion.frame_names)
+        if given != self._given:
+            self._columns = (
+                _positions(points.names, motion.point_names),
+                _positions(points.frame_names, motion.frame_names),
+            )
+            self._given = given
+        done, out = transfer_frames(
+            self._held,
+            SkeletonMotion(
+                np.ascontiguousarray(motion.position[samples]),
+                np.ascontiguousarray(motion.velocity[samples]),
+                np.ascontiguousarray(motion.acceleration[samples]),
+                np.ascontiguousarray(motion.points[samples]),
+                np.ascontiguousarray(motion.frames[samples]),
+                *self._columns,
+            ),
+            self._start,
+            SAME_POINT,
         )
-        n = len(place)
-        q, qd, qdd = np.empty((3, n, len(names)))
-        out = TransferredFrames(
-            q=q,
-            qd=qd,
-            qdd=qdd,
-            point_distance=np.empty((n, len(points.names))),
-            frame_angle=np.empty((n, len(points.frame_names))),
-            iterations=np.empty(n, np.int64),
-            converged=np.empty(n, np.bool_),
-            at_limit=np.empty((n, len(names)), np.bool_),
-            off=np.empty((n, len(points.names))),
-        )
-        values = (
-            np.ascontiguousarray(motion.position[samples]),
-            np.ascontiguousarray(motion.velocity[samples]),
-            np.ascontiguousarray(motion.acceleration[samples]),
-        )
-        done = transfer_frames(
-            self._setup, values, np.ascontiguousarray(place), frames, self._start, SAME_POINT, out
-        )
-        if done < n:
+        if done < len(out.q):
             worst = int(np.argmax(out.off[done]))
             raise TransferError(
                 f'motion at {motion.time[samples][done]:.3f} s: '
                 f'point {points.names[worst]!r} is {out.off[done, worst]:.4f} m '
                 'away from the skeleton of the subject'
             )
-        return TransferredMotion(*out[:-1], names)
+        return TransferredMotion(*out[:-1], self.subject.multibody.coordinate_names)
 
 
 def _same_coordinates(names: tuple[str, ...], skeleton: tuple[str, ...]) -> NDArray[np.int64]:

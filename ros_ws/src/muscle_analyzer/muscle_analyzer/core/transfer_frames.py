@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 
 from human_model.compiled import body_motion
 from human_model.tree import TreeArrays
-from muscle_analyzer.core.kinematics import cross, forward_kinematics, turned
+from muscle_analyzer.core.held import Held
+from muscle_analyzer.core.kinematics import cross, turned
 from muscle_analyzer.core.multibody import Tree
-from muscle_analyzer.core.pose_fit import Rates, Targets, fit_pose, map_rates, misfit
+from muscle_analyzer.core.pose_fit import Rates, Targets, fit_pose, map_rates
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -119,6 +120,68 @@ class TransferredFrames(NamedTuple):
     converged: BoolArray
     at_limit: BoolArray
     off: Array
+
+
+class SkeletonMotion(NamedTuple):
+    """Frames of a skeleton's motion; see `human_model.motion.BodyMotion`.
+
+    Attributes
+    ----------
+    position, velocity, acceleration : (n, n_s) arrays
+        Coordinates of the skeleton in rad or m, rates, accelerations.
+    points : (n, n_all, 3) array
+        REP-103 axes, m.
+    frames : (n, n_frames, 4) array
+        Quaternions xyzw.
+    point_column, frame_column : (n_p,), (n_f,) int arrays
+        Where the points and frames of the model are among them.
+    """
+
+    position: Array
+    velocity: Array
+    acceleration: Array
+    points: Array
+    frames: Array
+    point_column: IntArray
+    frame_column: IntArray
+
+
+@njit(cache=True)
+def _no_frames(n: int, n_q: int, n_p: int, n_f: int) -> TransferredFrames:
+    """Give room for n frames."""
+    return TransferredFrames(
+        np.empty((n, n_q)),
+        np.empty((n, n_q)),
+        np.empty((n, n_q)),
+        np.empty((n, n_p)),
+        np.empty((n, n_f)),
+        np.empty(n, np.int64),
+        np.empty(n, np.bool_),
+        np.empty((n, n_q), np.bool_),
+        np.empty((n, n_p)),
+    )
+
+
+@njit(cache=True)
+def _set_frame(motion: SkeletonMotion, k: int, place: Array, frames: Array) -> None:
+    """Write places (n_p, 3) and rotation matrices (n_f, 3, 3) of a frame of the motion."""
+    for i in range(place.shape[0]):
+        for j in range(3):
+            place[i, j] = motion.points[k, motion.point_column[i], j]
+    for f in range(frames.shape[0]):
+        q = motion.frames[k, motion.frame_column[f]]
+        size = np.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
+        x, y, z, w = q[0] / size, q[1] / size, q[2] / size, q[3] / size
+        m = frames[f]
+        m[0, 0] = 1 - 2 * (y * y + z * z)
+        m[0, 1] = 2 * (x * y - z * w)
+        m[0, 2] = 2 * (x * z + y * w)
+        m[1, 0] = 2 * (x * y + z * w)
+        m[1, 1] = 1 - 2 * (x * x + z * z)
+        m[1, 2] = 2 * (y * z - x * w)
+        m[2, 0] = 2 * (x * z - y * w)
+        m[2, 1] = 2 * (y * z + x * w)
+        m[2, 2] = 1 - 2 * (x * x + y * y)
 
 
 @njit(cache=True)
@@ -255,11 +318,8 @@ def _first(setup: TransferSetup) -> Array:
 
 
 @njit(cache=True)
-def _set_remaining(setup: TransferSetup, q: Array, distance: Array, angle: Array) -> None:
-    """Write the remaining distances (n_p,) and angles (n_f,), m and rad."""
-    targets = setup.targets
-    zero = np.zeros(q.size)
-    off = misfit(targets, forward_kinematics(setup.tree, q, zero, zero))
+def _set_remaining(targets: Targets, off: Array, distance: Array, angle: Array) -> None:
+    """Write the remaining distances (n_p,) and angles (n_f,) of a misfit, m and rad."""
     n_p = distance.size
     for i in range(n_p + angle.size):
         size = np.sqrt(off[3 * i] ** 2 + off[3 * i + 1] ** 2 + off[3 * i + 2] ** 2)
@@ -271,67 +331,65 @@ def _set_remaining(setup: TransferSetup, q: Array, distance: Array, angle: Array
 
 @njit(cache=True, nogil=True)
 def transfer_frames(
-    setup: TransferSetup,
-    motion: tuple[Array, Array, Array],
-    places: Array,
-    frames: Array,
-    start: Array,
-    same_point: float,
-    out: TransferredFrames,
-) -> int:
+    held: Held[TransferSetup], motion: SkeletonMotion, start: Array, same_point: float
+) -> tuple[int, TransferredFrames]:
     """Take frame after frame over, each from the one before.
 
     Parameters
     ----------
-    setup : TransferSetup
+    held : Held of TransferSetup
         Its targets are changed.
-    motion : tuple of (n, n_s) arrays
-        Coordinates of the skeleton in rad or m, rates, accelerations.
-    places : (n, n_p, 3) array
-        Points of the motion, REP-103 axes, m.
-    frames : (n, n_f, 3, 3) array
-        Its frames.
+    motion : SkeletonMotion
     start : (n_q,) array
         Coordinates to start from, NaN without a frame before; on return those to go on from.
     same_point : float
         Distance up to which the motion's points are those of the skeleton, m.
-    out : TransferredFrames
 
     Returns
     -------
-    int
+    done : int
         Number of frames taken over: the next one's points are not those of the skeleton.
+    out : TransferredFrames
+        Of these frames.
     """
+    setup = held.content
     targets = setup.targets
-    for k in range(places.shape[0]):
-        own = _skeleton_state(setup, motion[0][k], motion[1][k], motion[2][k])
-        heading = _heading(setup, own, frames[k])
-        _distances(setup, own, heading, places[k], out.off[k])
-        for i in range(out.off.shape[1]):
+    n_q, n_p, n_f = start.size, motion.point_column.size, motion.frame_column.size
+    out = _no_frames(len(motion.position), n_q, n_p, n_f)
+    place, frames = np.empty((n_p, 3)), np.empty((n_f, 3, 3))
+    free = np.empty(n_q, np.bool_)
+    for k in range(len(motion.position)):
+        position, velocity = motion.position[k], motion.velocity[k]
+        acceleration = motion.acceleration[k]
+        own = _skeleton_state(setup, position, velocity, acceleration)
+        _set_frame(motion, k, place, frames)
+        heading = _heading(setup, own, frames)
+        _distances(setup, own, heading, place, out.off[k])
+        for i in range(n_p):
             if out.off[k, i] > same_point:
-                return k
-        _set_targets(setup, places[k], frames[k], motion[0][k])
+                return k, out
+        _set_targets(setup, place, frames, position)
         first = _first(setup) if np.isnan(start[0]) else start.copy()
         fit = fit_pose(
             setup.tree, targets, first, setup.lower, setup.upper, setup.fitted, setup.tolerance,
             setup.max_iterations,
         )  # fmt: skip
-        free = np.empty(start.size, np.bool_)
-        for c in range(start.size):
+        for c in range(n_q):
             out.at_limit[k, c] = fit.q[c] <= setup.lower[c] or fit.q[c] >= setup.upper[c]
             free[c] = setup.fitted[c] and not out.at_limit[k, c]
-        rate, acceleration = map_rates(
+        rate, second_rate = map_rates(
             setup.tree,
             targets,
             fit.q,
+            fit.state,
             free,
-            _rates(setup, heading, own.velocity, own.omega, motion[1][k]),
-            _rates(setup, heading, own.acceleration, own.alpha, motion[2][k]),
+            _rates(setup, heading, own.velocity, own.omega, velocity),
+            _rates(setup, heading, own.acceleration, own.alpha, acceleration),
         )
-        for c in range(start.size):
-            out.q[k, c], out.qd[k, c], out.qdd[k, c] = fit.q[c], rate[c], acceleration[c]
+        for c in range(n_q):
+            out.q[k, c], out.qd[k, c], out.qdd[k, c] = fit.q[c], rate[c], second_rate[c]
             start[c] = fit.q[c] if fit.converged else np.nan
         out.iterations[k] = fit.iterations
         out.converged[k] = fit.converged
-        _set_remaining(setup, fit.q, out.point_distance[k], out.frame_angle[k])
-    return len(places)
+        _set_remaining(targets, fit.residual, out.point_distance[k], out.frame_angle[k])
+    return len(motion.position), out

@@ -1,0 +1,93 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Small dense least squares, compiled: normal equations and Cholesky's method.
+
+Written out instead of called from a library: for some forty unknowns a call costs as much as the
+work, and a body's point hangs on few of a tree's coordinates: most rows of a product are zero.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+@njit(cache=True, error_model='numpy')
+def normal_equations(jacobian: Array, residual: Array) -> tuple[Array, Array]:
+    """Return J^T J (n, n) and J^T r (n,) of a Jacobian (3 m, n) and a residual (3 m,).
+
+    Rows come in threes that hang on the same unknowns: the axes of a point or a rotation.
+    """
+    n = jacobian.shape[1]
+    normal, gradient = np.zeros((n, n)), np.zeros(n)
+    for first in range(0, jacobian.shape[0], 3):
+        jx, jy, jz = jacobian[first], jacobian[first + 1], jacobian[first + 2]
+        rx, ry, rz = residual[first], residual[first + 1], residual[first + 2]
+        for i in range(n):
+            x, y, z = jx[i], jy[i], jz[i]
+            if x != 0.0 or y != 0.0 or z != 0.0:
+                gradient[i] += x * rx + y * ry + z * rz
+                row = normal[i]
+                for j in range(n):
+                    row[j] += x * jx[j] + y * jy[j] + z * jz[j]
+    return normal, gradient
+
+
+@njit(cache=True, error_model='numpy')
+def factorise(matrix: Array) -> bool:
+    """Write L of a positive definite matrix L L^T (n, n) into its lower triangle; False if not."""
+    n = matrix.shape[0]
+    for j in range(n):
+        for k in range(j):
+            matrix[j, j] -= matrix[j, k] * matrix[j, k]
+        if not matrix[j, j] > 0.0:
+            return False
+        matrix[j, j] = np.sqrt(matrix[j, j])
+        for i in range(j + 1, n):
+            for k in range(j):
+                matrix[i, j] -= matrix[i, k] * matrix[j, k]
+            matrix[i, j] /= matrix[j, j]
+    return True
+
+
+@njit(cache=True, error_model='numpy')
+def solve_factorised(lower: Array, right: Array) -> None:
+    """Solve L L^T x = right (n,) of `factorise`; the solution takes the right side's place."""
+    n = right.size
+    for i in range(n):
+        for k in range(i):
+            right[i] -= lower[i, k] * right[k]
+        right[i] /= lower[i, i]
+    for i in range(n - 1, -1, -1):
+        for k in range(i + 1, n):
+            right[i] -= lower[k, i] * right[k]
+        right[i] /= lower[i, i]
+
+
+@njit(cache=True)
+def damped_part(normal: Array, index: IntArray, damping: float) -> Array:
+    """Return the rows and columns `index` of the normal matrix, with damping."""
+    n = index.size
+    matrix = np.empty((n, n))
+    for i in range(n):
+        for j in range(n):
+            matrix[i, j] = normal[index[i], index[j]]
+        matrix[i, i] += damping
+    return matrix
+
+
+@njit(cache=True)
+def solution(factor: Array, positive: bool, index: IntArray, right: Array) -> Array:
+    """Return the solution (n_q,) for the unknowns `index`, zero elsewhere; NaN without one."""
+    part = right[index]
+    if positive:
+        solve_factorised(factor, part)
+    else:
+        part[:] = np.nan
+    out = np.zeros(right.size)
+    out[index] = part
+    return out
