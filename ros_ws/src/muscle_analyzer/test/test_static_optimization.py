@@ -158,3 +158,24 @@ def test_bad_numbers_are_named():
         solver(1, 1, reserves=[0.0])
     with pytest.raises(OptionError, match='minimum_activation 2'):
         solver(1, 1, minimum_activation=2.0)
+
+
+def test_start_goes_on_as_the_two_frames_before():
+    matrix, torque = random_problem(3)
+    onward, last = solver(*matrix.shape), solver(*matrix.shape)
+    steps = []
+    for k in range(8):
+        # The other solver is told that nothing changed between the frames before.
+        last.past[1] = last.past[0]
+        torques = (1.0 + 0.01 * k) * torque
+        steps.append([s.solve(matrix, torques).report.iterations for s in (onward, last)])
+    assert steps[:2] == [steps[0], [steps[1][0]] * 2]  # one frame before: no change known
+    assert np.sum(steps, axis=0)[0] < np.sum(steps, axis=0)[1]
+
+
+def test_failed_frame_leaves_no_start():
+    matrix, torque = random_problem(3)
+    optimizer = solver(*matrix.shape, max_iterations=1)
+    optimizer.past[:] = 1.0
+    assert not optimizer.solve(matrix, torque).converged
+    assert not optimizer.past.any()

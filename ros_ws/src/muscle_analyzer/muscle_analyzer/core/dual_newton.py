@@ -96,28 +96,36 @@ def columns_of(matrix: Array) -> Columns:
 
 @njit(cache=True, error_model='numpy')
 def _cholesky_solve(matrix: Array, vector: Array) -> bool:
-    """Solve in place; the solution replaces `vector`.  False if not positive definite."""
+    """
+    Solve in place; the solution replaces `vector`.  False if not positive definite.
+
+    Of `matrix` only the lower triangle is used.  What is left of a row's first entry stays zero in
+    the factor and is left out: most muscles cross few joints, so that is most of it.
+    """
     n = vector.size
-    for j in range(n):
-        pivot = matrix[j, j]
-        for k in range(j):
-            pivot -= matrix[j, k] ** 2
-        if not pivot > 0.0:
-            return False
-        matrix[j, j] = np.sqrt(pivot)
-        for i in range(j + 1, n):
-            entry = matrix[i, j]
-            for k in range(j):
-                entry -= matrix[i, k] * matrix[j, k]
-            matrix[i, j] = entry / matrix[j, j]
+    first = np.empty(n, np.int64)
     for i in range(n):
-        for k in range(i):
+        first[i] = 0
+        while matrix[i, first[i]] == 0.0 and first[i] < i:
+            first[i] += 1
+        for j in range(first[i], i + 1):
+            entry = matrix[i, j]
+            for k in range(max(first[i], first[j]), j):
+                entry -= matrix[i, k] * matrix[j, k]
+            if j < i:
+                matrix[i, j] = entry / matrix[j, j]
+            elif entry > 0.0:
+                matrix[i, i] = np.sqrt(entry)
+            else:
+                return False
+    for i in range(n):
+        for k in range(first[i], i):
             vector[i] -= matrix[i, k] * vector[k]
         vector[i] /= matrix[i, i]
     for i in range(n - 1, -1, -1):
-        for k in range(i + 1, n):
-            vector[i] -= matrix[k, i] * vector[k]
         vector[i] /= matrix[i, i]
+        for k in range(first[i], i):
+            vector[k] -= matrix[i, k] * vector[i]
     return True
 
 
@@ -185,6 +193,70 @@ def _hessian(
 
 
 @njit(cache=True, error_model='numpy')
+def _dot(a: Array, b: Array) -> float:
+    """Give the product of two vectors."""
+    total = 0.0
+    for j in range(a.size):
+        total += a[j] * b[j]
+    return total
+
+
+@njit(cache=True, error_model='numpy')
+def _step_size(
+    columns: Columns,
+    reserve: Array,
+    lower: Array,
+    upper: Array,
+    weight: Array,
+    exponent: float,
+    multiplier: Array,
+    step: Array,
+    first_slope: float,
+    whole_slope: float,
+) -> float:
+    """
+    Find where along a step that is too long the slope of the dual has all but gone.
+
+    The slope falls along the step, from `first_slope` (positive) to `whole_slope` (negative).  Its
+    zero is sought by false position, halving the kept end's slope when one end stays twice (the
+    Illinois rule).  Along one line the pull on each muscle is a line too, which spares the matrix.
+    """
+    start, row, value = columns
+    n_m = lower.size
+    pull, turn, before = np.empty(n_m), np.empty(n_m), np.empty(n_m)
+    for i in range(n_m):
+        pull[i], turn[i] = 0.0, 0.0
+        for k in range(start[i], start[i + 1]):
+            pull[i] += value[k] * multiplier[row[k]]
+            turn[i] += value[k] * step[row[k]]
+        before[i] = _minimiser(pull[i], lower[i], upper[i], weight[i], exponent)[0]
+    bend = 0.0
+    for j in range(step.size):
+        bend += 0.5 * (reserve[j] * step[j]) ** 2
+    near, near_slope, past, past_slope, last = 0.0, first_slope, 1.0, whole_slope, -1
+    size = near_slope / (near_slope - past_slope)
+    for _ in range(LINE_TRIALS):
+        here = first_slope - size * bend
+        for i in range(n_m):
+            now = _minimiser(pull[i] + size * turn[i], lower[i], upper[i], weight[i], exponent)[0]
+            here -= turn[i] * (now - before[i])
+        if abs(here) <= SLOPE_SHARE * first_slope:
+            break
+        if here > 0.0:
+            near, near_slope = size, here
+            if last == 1:
+                past_slope *= 0.5
+            last = 1
+        else:
+            past, past_slope = size, here
+            if last == -1:
+                near_slope *= 0.5
+            last = -1
+        size = near + (past - near) * near_slope / (near_slope - past_slope)
+    return size
+
+
+@njit(cache=True, error_model='numpy')
 def solve_dual(
     columns: Columns,
     reserve: Array,
@@ -246,38 +318,24 @@ def solve_dual(
         if not _cholesky_solve(hessian, step):
             return activation, gradient, iterations, False
         iterations += 1
-        first_slope = 0.0
+        first_slope = _dot(gradient, step)
         for j in range(n_c):
-            first_slope += gradient[j] * step[j]
-        # The slope of the dual falls along the step.  Where it passes zero within the step, find
-        # that place between `near` (slope positive) and `past` (negative) by false position,
-        # halving the kept end's slope when one end stays twice (the Illinois rule).
-        size, near, past = 1.0, 0.0, 1.0
-        near_slope, past_slope, last = first_slope, 0.0, 0
-        for _ in range(LINE_TRIALS):
+            trial[j] = multiplier[j] + step[j]
+        worst = _evaluate(
+            columns, reserve, torque, lower, upper, weight, exponent, trial,
+            activation, slope, gradient,
+        )  # fmt: skip
+        whole_slope = _dot(gradient, step)
+        if whole_slope < -SLOPE_SHARE * first_slope and worst > tolerance:
+            size = _step_size(
+                columns, reserve, lower, upper, weight, exponent, multiplier, step,
+                first_slope, whole_slope,
+            )  # fmt: skip
             for j in range(n_c):
                 trial[j] = multiplier[j] + size * step[j]
             worst = _evaluate(
                 columns, reserve, torque, lower, upper, weight, exponent, trial,
                 activation, slope, gradient,
             )  # fmt: skip
-            here = 0.0
-            for j in range(n_c):
-                here += gradient[j] * step[j]
-            if abs(here) <= SLOPE_SHARE * first_slope or worst <= tolerance:
-                break
-            if here > 0.0:
-                if size == 1.0:
-                    break
-                near, near_slope = size, here
-                if last == 1:
-                    past_slope *= 0.5
-                last = 1
-            else:
-                past, past_slope = size, here
-                if last == -1:
-                    near_slope *= 0.5
-                last = -1
-            size = near + (past - near) * near_slope / (near_slope - past_slope)
         _copy(trial, multiplier)
     return activation, gradient, iterations, True

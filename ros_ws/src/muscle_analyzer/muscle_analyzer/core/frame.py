@@ -28,7 +28,13 @@ from muscle_analyzer.core.multibody import Tree
 from muscle_analyzer.core.muscle_curves import MuscleParameters, strength
 from muscle_analyzer.core.muscle_path_table import PathTable
 from muscle_analyzer.core.muscle_paths import body_wrenches, posture_paths
-from muscle_analyzer.core.torque_sharing import Actuators, account, share_torque
+from muscle_analyzer.core.torque_sharing import (
+    Actuators,
+    account,
+    first_guess,
+    remember,
+    share_torque,
+)
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -306,23 +312,22 @@ def add_reactions(
 
 
 @_inner
-def _optimize(model: FrameModel, asked: Demand, warm: Array, out: FrameLoads, k: int) -> None:
+def _optimize(model: FrameModel, asked: Demand, past: Array, out: FrameLoads, k: int) -> None:
     """Share the torques of frame number k among the muscles."""
+    multiplier = first_guess(past)
     activation, residual, iterations, converged = share_torque(
-        model.actuators, asked.columns, asked.to_balance, warm
+        model.actuators, asked.columns, asked.to_balance, multiplier
     )
     out.account[k, 0], out.account[k, 1], out.account[k, 2] = account(
-        model.actuators, asked.columns, asked.to_balance, activation, residual, warm,
+        model.actuators, asked.columns, asked.to_balance, activation, residual, multiplier,
         1.0, np.inf, out.reserve[k], out.weak[k],
     )  # fmt: skip
     _copy(activation, out.activation, k)
     _copy(residual, out.residual, k)
-    _copy(warm, out.multiplier, k)
+    _copy(multiplier, out.multiplier, k)
     out.iterations[k] = iterations
     out.converged[k] = converged
-    if not converged:
-        for j in range(warm.size):
-            warm[j] = 0.0
+    remember(past, multiplier, converged)
 
 
 @njit(cache=True, error_model='numpy', nogil=True)
@@ -333,7 +338,7 @@ def solve_frames(
     qdd: Array,
     external: Array,
     step: int,
-    warm: Array,
+    past: Array,
     out: FrameLoads,
     matrix: Array,
 ) -> None:
@@ -351,8 +356,9 @@ def solve_frames(
     step
         `WHOLE` for all of it, the cost being a power of the activations; `ASK` and `ANSWER` for
         what comes before and after an optimisation elsewhere.
-    warm : (n_c,)
-        Multipliers to start from; on return those to go on from (0 after a failure).
+    past : (2, n_c)
+        Multipliers of the two frames before, the last first (see `torque_sharing.first_guess`);
+        on return those to go on from.
     out
         Takes the solutions; with `ANSWER` it gives the activations.
     matrix : (n, n_c, n_m)
@@ -373,5 +379,5 @@ def solve_frames(
                     matrix[k, columns.row[c], m] = columns.value[c]
             continue
         if step == WHOLE:
-            _optimize(model, asked, warm, out, k)
+            _optimize(model, asked, past, out, k)
         add_reactions(model, asked, q[k], out, k)

@@ -198,7 +198,7 @@ class LoadSolver:
         if self.optimization.criterion is Criterion.MIN_MAX:
             self._min_max(motion, out)
         else:
-            solve_frames(self._held, *motion, WHOLE, self.optimization.start, out, _NOTHING)
+            solve_frames(self._held, *motion, WHOLE, self.optimization.past, out, _NOTHING)
             self._check(out)
         return out
 
@@ -255,7 +255,7 @@ class LoadSolver:
         n = len(out.wrong)
         matrix = np.zeros((n, len(self.coordinate_names), len(self.muscle_names)))
         held, optimization = self._held, self.optimization
-        solve_frames(held, *motion, ASK, optimization.start, out, matrix)
+        solve_frames(held, *motion, ASK, optimization.past, out, matrix)
         self._check(out)
         for k in range(n):
             outcome, found = optimization.share(matrix[k], out.to_balance[k])
@@ -263,7 +263,7 @@ class LoadSolver:
             out.multiplier[k], out.residual[k] = outcome.multiplier, outcome.residual
             out.iterations[k], out.converged[k] = outcome.iterations, outcome.converged
             out.weak[k], out.account[k] = outcome.weak, found
-        solve_frames(held, *motion, ANSWER, optimization.start, out, matrix)
+        solve_frames(held, *motion, ANSWER, optimization.past, out, matrix)
 
     def _check(self, loads: FrameLoads) -> None:
         if loads.wrong.max(initial=-1) < 0:

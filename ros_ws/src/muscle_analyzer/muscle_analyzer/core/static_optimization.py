@@ -27,6 +27,8 @@ from muscle_analyzer.core.torque_sharing import (
     Account,
     Actuators,
     account,
+    first_guess,
+    remember,
     residual_limit,
     share_torque,
 )
@@ -230,14 +232,14 @@ class StaticOptimization:
             tolerance=float(self.options.tolerance),
             max_iterations=int(self.options.max_iterations),
         )
-        self.start = np.zeros(len(reserves))
+        self.past = np.zeros((2, len(reserves)))
         # Where a muscle counts as at its bounds: not to be worked out for every frame.
         self._low = self.actuators.lower + AT_BOUND
         self._full = self.actuators.upper - AT_BOUND
 
     def reset(self) -> None:
-        """Forget the previous frame."""
-        self.start = np.zeros(len(self.coordinate_names))
+        """Forget the frames before."""
+        self.past = np.zeros((2, len(self.coordinate_names)))
 
     def solve(self, matrix: Array, torque: Array) -> MuscleBalance:
         """
@@ -264,7 +266,7 @@ class StaticOptimization:
     def share(self, matrix: Array, torque: Array) -> tuple[Outcome, Account]:
         """Share the torques of one frame as `solve`, whose input has been checked."""
         columns = columns_of(matrix)
-        multiplier = self.start.copy()
+        multiplier = first_guess(self.past)
         share, cap, at_top = 1.0, np.inf, 0.0
         if self.criterion is Criterion.MIN_MAX:
             activation, residual, iterations, converged, cap = self._min_max(
@@ -275,7 +277,7 @@ class StaticOptimization:
             activation, residual, iterations, converged = share_torque(
                 self.actuators, columns, torque, multiplier
             )
-        self.start = multiplier if converged else np.zeros_like(multiplier)
+        remember(self.past, multiplier, converged)
         reserve, weak = np.empty(torque.size), np.empty(torque.size, np.bool_)
         found = account(
             self.actuators, columns, torque, activation, residual, multiplier, share, cap,

@@ -86,6 +86,31 @@ def residual_limit(actuators: Actuators, torque: Array) -> float:
 
 
 @njit(cache=True, error_model='numpy')
+def first_guess(past: Array) -> Array:
+    """
+    Give multipliers (n_c,) to start a frame from: on as the two frames before it went.
+
+    `past` (2, n_c) holds theirs, the last first; zeros are no frame.
+    """
+    guess = np.empty(past.shape[1])
+    for j in range(guess.size):
+        guess[j] = 2.0 * past[0, j] - past[1, j]
+    return guess
+
+
+@njit(cache=True, error_model='numpy')
+def remember(past: Array, multiplier: Array, converged: bool) -> None:
+    """Put a frame's multipliers (n_c,) in front of `past`, or forget all if it failed."""
+    first = not past[0].any()
+    for j in range(multiplier.size):
+        if not converged:
+            past[0, j], past[1, j] = 0.0, 0.0
+            continue
+        past[1, j] = multiplier[j] if first else past[0, j]
+        past[0, j] = multiplier[j]
+
+
+@njit(cache=True, error_model='numpy')
 def share_torque(
     actuators: Actuators, columns: Columns, torque: Array, multiplier: Array
 ) -> tuple[Array, Array, int, bool]:
