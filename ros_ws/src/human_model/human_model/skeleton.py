@@ -23,6 +23,11 @@ from human_model.tree import TreeArrays, build_tree, segment_points
 Array = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
+#: Shape of one sample of the forces of a motion, and what stands for one that is not given.
+_LEFT_OUT: dict[str, tuple[tuple[int, ...], float]] = {
+    'ground_force': ((2, 3), 0.0), 'cop': ((2, 3), np.nan), 'free_moment': ((2, 3), 0.0),
+    'hand_force': ((2, 3), 0.0), 'box_position': ((3,), np.nan)}
+
 
 @dataclass(frozen=True, eq=False)
 class ExternalForce:
@@ -135,24 +140,26 @@ class Skeleton:
 
     def point_array(self, q: npt.ArrayLike) -> Array:
         """Positions (n, n_p, 3) [m] of the shared points for coordinates (n, n_q)."""
-        block = self._block('q', q)
-        if not self.uses_compiled:
-            return tree_kinematics.point_positions(
-                self.tree, block, self.point_segment, self.point_local)
-        return np.array([self._positions(row, self.point_segment, self.point_local)
-                         for row in block])
+        return self.points_and_frames(q)[0]
 
     def frame_array(self, q: npt.ArrayLike) -> Array:
         """Quaternions (n, n_f, 4) xyzw of the shared frames for coordinates (n, n_q)."""
+        return self.points_and_frames(q)[1]
+
+    def points_and_frames(self, q: npt.ArrayLike) -> tuple[Array, Array]:
+        """Return both: points (n, n_p, 3) [m] and frames (n, n_f, 4) for coordinates (n, n_q)."""
         block = self._block('q', q)
         if not self.uses_compiled:
-            return quaternion_from_matrix(
-                tree_kinematics.segment_frames(self.tree, block)[0][:, self.frame_segment])
+            rotation, _ = tree_kinematics.segment_frames(self.tree, block)
+            return (tree_kinematics.point_positions(
+                        self.tree, block, self.point_segment, self.point_local),
+                    quaternion_from_matrix(rotation[:, self.frame_segment]))
         # Numba loads for long.
-        from human_model.compiled_quaternions import quaternions
+        from human_model.compiled_blocks import points_and_frames
 
-        return np.array([quaternions(self._segment_frames(row)[0][self.frame_segment])
-                         for row in block])
+        points, frames = points_and_frames(self.tree, block, self.point_segment,
+                                           self.point_local, self.frame_segment)
+        return points, frames
 
     def point_jacobian(self, q: npt.ArrayLike, segment: str, local: npt.ArrayLike) -> Array:
         """Jacobian (n, 3, n_q) of points (n, 3) [m] given in a segment's anatomical frame."""
@@ -195,28 +202,26 @@ class Skeleton:
             self.wrenches(external), gravity)
 
     def body_motion(self, time: npt.ArrayLike, q: npt.ArrayLike, qd: npt.ArrayLike,
-                    qdd: npt.ArrayLike, **forces: Any) -> BodyMotion:
+                    qdd: npt.ArrayLike, places: tuple[Array, Array] | None = None,
+                    **forces: Any) -> BodyMotion:
         """Motion block of coordinates (n, n_q) and their rates.
 
+        ``places``: what `points_and_frames` gave for these coordinates, if it was asked already.
         ``forces``: ``ground_force``, ``cop``, ``free_moment``, ``hand_force`` (n, 2, 3) and
         ``box_position`` (n, 3). What is left out is zero; cop and box_position are NaN.
         """
         stamps = np.atleast_1d(np.asarray(time, dtype=np.float64))
         position = self._block('q', q)
-        n = len(stamps)
-        values = {'ground_force': np.zeros((n, 2, 3)), 'cop': np.full((n, 2, 3), np.nan),
-                  'free_moment': np.zeros((n, 2, 3)), 'hand_force': np.zeros((n, 2, 3)),
-                  'box_position': np.full((n, 3), np.nan)}
-        unknown = sorted(set(forces) - set(values))
+        unknown = sorted(set(forces) - set(_LEFT_OUT))
         if unknown:
             raise MotionError(f'body_motion: unknown field {unknown[0]!r}')
-        values.update({name: np.asarray(array) for name, array in forces.items()
-                       if array is not None})
+        values = {name: np.full((len(stamps), *shape), fill) if forces.get(name) is None
+                  else forces[name] for name, (shape, fill) in _LEFT_OUT.items()}
+        points, frames = self.points_and_frames(position) if places is None else places
         return BodyMotion(
             time=stamps, skeleton=self.name, coordinates=self.coordinates, position=position,
             velocity=self._block('qd', qd), acceleration=self._block('qdd', qdd),
-            point_names=POINTS, points=self.point_array(position), frame_names=FRAMES,
-            frames=self.frame_array(position), **values)
+            point_names=POINTS, points=points, frame_names=FRAMES, frames=frames, **values)
 
     def _segment_frames(self, q: Array) -> tuple[Array, Array]:
         if not self.uses_compiled:

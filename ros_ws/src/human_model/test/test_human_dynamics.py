@@ -7,6 +7,7 @@ import pytest
 
 from human_model import compiled
 from human_model.anthropometry import SegmentParameters
+from human_model.compiled_blocks import outer_force
 from human_model.errors import ChainError
 from human_model.recursive import (
     augmented_inertia,
@@ -42,6 +43,17 @@ def test_recursion_and_newton_euler_agree(skeleton, rng):
         slow = recursive_dynamics(skeleton.chain, skeleton.parameters, q, qd, qdd,
                                   wrench=skeleton.wrenches(external))
         assert fast == pytest.approx(slow, abs=1e-9)
+
+
+def test_outer_force_is_the_residual_at_the_pelvis(skeleton, rng):
+    """Of a block of instants: world axes, right is -y."""
+    q, qd, qdd = rng.normal(size=(3, 4, len(skeleton.coordinates))) * [[[0.7]], [[2.0]], [[8.0]]]
+    force = outer_force(skeleton.tree, q, qd, qdd, GRAVITY)
+    tau = np.array([skeleton.inverse_dynamics(*row) for row in zip(q, qd, qdd, strict=True)])
+    assert force[:, 0] == pytest.approx(tau[:, skeleton.index('pelvis_tx')])
+    assert force[:, 2] == pytest.approx(tau[:, skeleton.index('pelvis_ty')])
+    if 'pelvis_tz' in skeleton.coordinates:
+        assert force[:, 1] == pytest.approx(-tau[:, skeleton.index('pelvis_tz')])
 
 
 def test_frames_of_both_paths_agree(skeleton, rng):

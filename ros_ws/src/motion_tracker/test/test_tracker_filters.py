@@ -59,6 +59,17 @@ def test_derivatives_of_the_causal_filter_belong_to_its_value():
     assert acceleration[:, 1] == pytest.approx(np.ones(400), abs=1e-4)
 
 
+@given(st.lists(st.integers(0, 7), max_size=8))
+@settings(deadline=None)
+def test_a_block_passes_a_filter_with_the_bits_of_its_samples(sizes):
+    samples = np.random.default_rng(3).normal(size=(sum(sizes), 2))
+    single, block = CausalFilter(1000.0, 25.0, 2), CausalFilter(1000.0, 25.0, 2)
+    expected = [single.step(sample)[0] for sample in samples]
+    parts = np.split(samples, np.cumsum(sizes))[:-1]
+    passed = [row for part in parts for row in block.values(part)]
+    assert np.array_equal(passed, expected)
+
+
 def test_causal_filter_starts_at_rest_in_its_first_sample():
     causal = CausalFilter(100.0, 6.0, 1)
     value, speed, acceleration = causal.step([3.7])

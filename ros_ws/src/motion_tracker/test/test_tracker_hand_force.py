@@ -4,12 +4,13 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from motion_tracker.core.errors import HandForceError
 from motion_tracker.core.force_plates import STANDARD_GRAVITY as G
-from motion_tracker.core.hand_force import HandForceEstimator, HandForceSettings, split
+from motion_tracker.core.hand_force import HandForceEstimator, HandForceSettings
+from motion_tracker.core.hand_force_kernel import split
 
 SIZE = (0.25, 0.30, 0.15)
 BOX = np.array([0.4, 0.0, 0.1])
@@ -80,6 +81,21 @@ def test_a_whole_lift_has_no_step(estimator):
     assert not last.any()
 
 
+def test_samples_at_once_have_the_bits_of_samples_alone(estimator):
+    estimator.observe(-7.0, AWAY, BOX, 0.0, False, 0.01, 0.03)
+    rng = np.random.default_rng(5)
+    rise = np.linspace(0.0, 0.1, 20)[:, None] * [0.0, 0.0, 1.0]
+    hands = HANDS + rng.normal(0.0, 0.08, (20, 2, 3))
+    missing, acceleration = rng.normal(-60.0, 60.0, 20), rng.normal(size=(20, 3))
+    whole = estimator.estimate(missing, hands, BOX + rise, acceleration, 0.1, 0.1)
+    single = [estimator.estimate(float(m), h, b, a, 0.1, 0.1) for m, h, b, a in
+              zip(missing, hands, BOX + rise, acceleration, strict=True)]
+    assert np.array_equal(whole, single)
+    assert np.ptp(whole[:, :, 2].sum(axis=1)) > 50.0
+
+
+# The first example may have to compile.
+@settings(deadline=None)
 @given(share=st.floats(0.0, 1.0))
 def test_shares_balance_the_moment_of_the_weight(share):
     box = HANDS[1] + share * (HANDS[0] - HANDS[1])

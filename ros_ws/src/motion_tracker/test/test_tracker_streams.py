@@ -31,6 +31,20 @@ def test_filtered_samples_belong_to_the_time_they_are_asked_for():
     assert stream.filtered_at(START - 0.1) is None
 
 
+def test_rows_of_many_times_are_those_of_single_times():
+    """Between samples, on one, before and after the stream, in a gap."""
+    stream, _ = ramp(lost=range(400, 420))
+    times = START + np.array([-0.1, 0.0, 0.0101, 0.02, 0.3985, 0.41, 0.4195, 0.42, 0.999, 0.9995])
+    rows = stream.raw_rows_at(times)
+    single = [stream.raw_at(float(time)) for time in times]
+    nothing = np.full(2, np.nan)
+    assert np.array_equal(rows, [nothing if row is None else row for row in single],
+                          equal_nan=True)
+    lost = [True, False, False, False, False, True, True, False, False, True]
+    assert np.isnan(rows[:, 0]).tolist() == lost
+    assert np.isnan(stream.raw_rows_at(np.array([START + 5.0]))).all()
+
+
 def test_raw_samples_are_interpolated():
     stream, _ = ramp()
     assert stream.raw_at(START + 0.1234) == pytest.approx([0.1234, 1.0], abs=1e-6)

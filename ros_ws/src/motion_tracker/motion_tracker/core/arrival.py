@@ -4,11 +4,8 @@
 
 from collections.abc import Callable, Sequence
 
-from motion_tracker.core.streams import SampledStream
+from motion_tracker.core.streams import SAME, SampledStream
 from motion_tracker.core.tracked import Notice, Output
-
-#: Difference of stamps that counts as none [s]; stamps of this century have steps of 0.24 us.
-_SAME = 1e-9
 
 
 class Arrival:
@@ -71,7 +68,7 @@ class Arrival:
         """
         said: list[Output] = []
         for stream in streams:
-            if stream.last >= stamp - _SAME and stream.rate > 0:
+            if stream.last >= stamp - SAME and stream.rate > 0:
                 if stream.name in self.absent:
                     self.absent.discard(stream.name)
                     said.append(Notice(f'{stream.name}: samples are back', True))

@@ -5,21 +5,30 @@
 import numpy as np
 import numpy.typing as npt
 
-from human_model.compiled import GRAVITY, newton_euler
+from human_model.compiled import GRAVITY
+from human_model.compiled_blocks import outer_force
 from human_model.skeleton import Skeleton
 
 Array = npt.NDArray[np.float64]
 
 
 def needed_force(skeleton: Skeleton, q: Array, qd: Array, qdd: Array) -> Array:
-    """Sum of the outer forces (3,) [N] that carry and accelerate the body, world axes.
+    """Sum of the outer forces [N] that carry and accelerate the body, world axes.
 
-    Equal to mass times (acceleration of the centre of mass - gravity); taken from inverse
-    dynamics without outer forces, whose forces along the pelvis' translations are this sum.
+    The mass of each segment times (acceleration of its centre of mass - gravity).
+
+    Parameters
+    ----------
+    skeleton
+        Of the person.
+    q, qd, qdd
+        Coordinates and their rates, (n_q,) or (n, n_q).
+
+    Returns
+    -------
+    ndarray (3,) or (n, 3)
     """
-    nothing = np.zeros((len(skeleton.segments), 6))
-    tau = newton_euler(skeleton.tree, np.ascontiguousarray(q), np.ascontiguousarray(qd),
-                       np.ascontiguousarray(qdd), nothing, GRAVITY)
-    x, up, right = (float(tau[skeleton.index(name)])
-                    for name in ('pelvis_tx', 'pelvis_ty', 'pelvis_tz'))
-    return np.array([x, -right, up])
+    position, velocity, acceleration = (np.atleast_2d(np.ascontiguousarray(rows))
+                                        for rows in (q, qd, qdd))
+    force: Array = outer_force(skeleton.tree, position, velocity, acceleration, GRAVITY)
+    return force.reshape((*np.shape(q)[:-1], 3))

@@ -10,11 +10,13 @@ section 2.2.4.4); live one causal fourth-order filter runs, whose delay is known
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
 from scipy.linalg import expm
 
+from motion_tracker.core import filter_kernel
 from motion_tracker.core.errors import FilterError
 
 Array = npt.NDArray[np.float64]
@@ -121,14 +123,22 @@ def zero_phase(samples: npt.ArrayLike, rate: float, cutoff: float) -> Array:
         where = int(np.argwhere(~np.isfinite(array))[0][0])
         raise FilterError(f'samples: not finite at index {where}; fill the gaps first')
     # Loads for longer than all else here; needed only at the end of a lift.
-    from scipy.signal import butter, sosfiltfilt
+    from scipy.signal import sosfiltfilt
+
+    sections = _single_pass(rate, cutoff)
+    pad = min(array.shape[0] - 1, round(1.5 * rate / cutoff))
+    return np.asarray(sosfiltfilt(sections, array, axis=0, padtype='odd', padlen=pad))
+
+
+@lru_cache(maxsize=16)
+def _single_pass(rate: float, cutoff: float) -> Array:
+    """Sections of one of the two passes that together have -3 dB at the cutoff [Hz]."""
+    from scipy.signal import butter
 
     # Pre-warped, so that the correction holds for the digital filter, not only for its prototype.
     warped = np.tan(np.pi * cutoff / rate) / (np.sqrt(2.0) - 1.0) ** 0.25
     single = float(np.arctan(warped) * rate / np.pi)
-    sections = butter(2, single, fs=rate, output='sos')
-    pad = min(array.shape[0] - 1, round(1.5 * rate / cutoff))
-    return np.asarray(sosfiltfilt(sections, array, axis=0, padtype='odd', padlen=pad))
+    return np.asarray(butter(2, single, fs=rate, output='sos'))
 
 
 def derivatives(samples: npt.ArrayLike, rate: float) -> tuple[Array, Array]:
@@ -228,11 +238,11 @@ class CausalFilter:
         a[-1] = -polynomial[:0:-1]
         b = np.zeros((self.ORDER, 1))
         b[-1, 0] = 1.0
-        self._a, self._b, hold = _first_order_hold(a, b, self._omega / rate)
-        self._c = np.eye(3, self.ORDER)
-        self._d = self._c @ hold
-        self._scale = np.array([1.0, self._omega, self._omega**2])[:, None]
-        self._rest = np.linalg.solve(np.eye(self.ORDER) - self._a, self._b)
+        transition, gain, hold = _first_order_hold(a, b, self._omega / rate)
+        self._a, self._b = np.ascontiguousarray(transition), gain[:, 0].copy()
+        self._d = hold[:3, 0].copy()
+        self._scale = np.array([1.0, self._omega, self._omega**2])
+        self._rest = np.linalg.solve(np.eye(self.ORDER) - self._a, self._b)[:, None]
         self.delay = float(polynomial[-2] / polynomial[-1] / self._omega)
         self._state: Array | None = None
 
@@ -257,18 +267,38 @@ class CausalFilter:
         u = np.asarray(sample, dtype=np.float64)
         if u.shape != (self.channels,):
             raise FilterError(f'sample: shape ({self.channels},) is needed, got {u.shape}')
-        if not np.all(np.isfinite(u)):
-            raise FilterError(f'sample: channel {int(np.argmin(np.isfinite(u)))} is not finite')
-        if self._state is None:
-            self._state = self._rest * u
-        out = (self._c @ self._state + self._d * u) * self._scale
-        self._state = self._a @ self._state + self._b * u
-        return out[0], out[1], out[2]
+        value, first, second = self._run(u[None], 3)[0]
+        return value, first, second
+
+    def values(self, samples: npt.ArrayLike) -> Array:
+        """Take samples (n, channels) one after the other, give their values (n, channels).
+
+        Raises
+        ------
+        FilterError
+            As `step`.
+        """
+        u = np.asarray(samples, dtype=np.float64)
+        if u.ndim != 2 or u.shape[1] != self.channels:
+            raise FilterError(f'samples: shape (n, {self.channels}) is needed, got {u.shape}')
+        return self._run(u, 1)[:, 0]
+
+    def _run(self, samples: Array, kinds: int) -> Array:
+        """Values and ``kinds`` - 1 derivatives (n, kinds, channels)."""
+        out = np.empty((len(samples), kinds, self.channels))
+        if not len(samples):
+            return out
+        state = self._rest * samples[0] if self._state is None else self._state
+        bad = filter_kernel.run(self._a, self._b, self._d, self._scale, state,
+                                np.ascontiguousarray(samples), out)
+        if bad >= 0:
+            raise FilterError(f'sample: channel {bad} is not finite')
+        self._state = state
+        return out
 
     def frequency_response(self, frequency: npt.ArrayLike) -> npt.NDArray[np.complex128]:
         """Complex gain of value from input at the given frequencies [Hz]."""
         z = np.exp(2j * np.pi * np.atleast_1d(np.asarray(frequency, dtype=np.float64)) / self.rate)
         eye = np.eye(self.ORDER)
-        gains = [self._c[0] @ np.linalg.solve(point * eye - self._a, self._b[:, 0])
-                 + self._d[0, 0] for point in z]
+        gains = [np.linalg.solve(point * eye - self._a, self._b)[0] + self._d[0] for point in z]
         return np.array(gains, dtype=np.complex128)

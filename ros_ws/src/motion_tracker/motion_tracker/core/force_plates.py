@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Ground reaction, centre of pressure and free moment from the wrenches of two force plates."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
 
+from motion_tracker.core import plate_kernel
 from motion_tracker.core.errors import ForcePlateError
 
 Array = npt.NDArray[np.float64]
@@ -44,8 +44,8 @@ class PlateGeometry:
 
     def __post_init__(self) -> None:
         """Check shapes and that the rotation is one."""
-        origin = np.array(self.origin, dtype=np.float64)
-        rotation = np.array(self.rotation, dtype=np.float64)
+        origin = np.array(self.origin, dtype=np.float64, order='C')
+        rotation = np.array(self.rotation, dtype=np.float64, order='C')
         if origin.shape != (3,) or not np.all(np.isfinite(origin)):
             raise ForcePlateError(f'{self.name}.origin: three finite numbers needed, got {origin}')
         if rotation.shape != (3, 3) or np.max(np.abs(rotation @ rotation.T - np.eye(3))) > 1e-6 \
@@ -55,6 +55,7 @@ class PlateGeometry:
             raise ForcePlateError(f'{self.name}.surface_height: {self.surface_height} m')
         object.__setattr__(self, 'origin', origin)
         object.__setattr__(self, 'rotation', rotation)
+        object.__setattr__(self, 'surface_height', float(self.surface_height))
         if self.corners is not None:
             corners = np.array(self.corners, dtype=np.float64)
             if corners.ndim != 2 or corners.shape[0] < 3 or corners.shape[1] != 3:
@@ -110,39 +111,30 @@ def ground_reaction(force: npt.ArrayLike, moment: npt.ArrayLike, plate: PlateGeo
     ForcePlateError
         If the shapes do not agree or the threshold is not positive.
     """
-    f = np.atleast_2d(np.asarray(force, dtype=np.float64)) @ plate.rotation.T
-    m = np.atleast_2d(np.asarray(moment, dtype=np.float64)) @ plate.rotation.T
+    f = np.ascontiguousarray(np.atleast_2d(force), dtype=np.float64)
+    m = np.ascontiguousarray(np.atleast_2d(moment), dtype=np.float64)
     if f.shape != m.shape or f.shape[-1] != 3:
         raise ForcePlateError(f'{plate.name}: force {f.shape} and moment {m.shape} do not agree')
     if not threshold > 0:
         raise ForcePlateError(f'{plate.name}: threshold must be positive, got {threshold} N')
-    loaded = f[:, 2] > threshold
-    fz = np.where(loaded, f[:, 2], 1.0)
-    height = plate.surface_height - plate.origin[2]
-    x = (height * f[:, 0] - m[:, 1]) / fz
-    y = (m[:, 0] + height * f[:, 1]) / fz
-    free = m[:, 2] - x * f[:, 1] + y * f[:, 0]
-    cop = np.stack([x + plate.origin[0], y + plate.origin[1],
-                    np.full_like(x, plate.surface_height)], axis=-1)
-    cop[~loaded] = np.nan
-    force_out = np.where(loaded[:, None], f, 0.0)
-    free_moment = np.zeros_like(f)
-    free_moment[:, 2] = np.where(loaded, free, 0.0)
-    return GroundReaction(force_out, cop, free_moment, loaded)
+    return GroundReaction(*plate_kernel.reaction(f, m, plate.rotation, plate.origin,
+                                                 plate.surface_height, threshold))
 
 
-def total_reaction(feet: Sequence[GroundReaction]) -> tuple[Array, Array]:
-    """Total ground reaction force (n, 3) [N] and its centre of pressure (n, 3) [m].
+def total_cop(force: Array, cop: Array) -> Array:
+    """Centre of pressure (n, 3) [m] of all feet together.
 
-    The total centre of pressure is the mean of the feet's weighted by their vertical forces; it
-    is NaN where no foot is loaded.
+    The mean of the feet's, weighted by their vertical forces; NaN where no foot is loaded.
+
+    Parameters
+    ----------
+    force, cop
+        Force [N] and centre of pressure [m] of each foot (n, feet, 3); zero and NaN while it is
+        off its plate.
     """
-    if not feet:
-        raise ForcePlateError('total: at least one foot is needed')
-    force = np.sum([foot.force for foot in feet], axis=0)
-    weight = np.sum([foot.force[:, 2] for foot in feet], axis=0)
-    moment = np.sum([np.where(foot.loaded[:, None], foot.force[:, 2:] * foot.cop, 0.0)
-                     for foot in feet], axis=0)
-    with np.errstate(invalid='ignore', divide='ignore'):
-        cop = np.where(weight[:, None] > 0, moment / weight[:, None], np.nan)
-    return np.asarray(force), np.asarray(cop)
+    weight = force[..., 2:]
+    moment = np.where(weight > 0, weight * cop, 0.0).sum(axis=1)
+    total = weight.sum(axis=1)
+    mean: Array = np.full_like(moment, np.nan)
+    np.divide(moment, total, out=mean, where=total > 0)
+    return mean

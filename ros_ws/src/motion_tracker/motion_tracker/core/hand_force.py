@@ -20,8 +20,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from motion_tracker.core import hand_force_kernel
 from motion_tracker.core.errors import HandForceError
-from motion_tracker.core.force_plates import STANDARD_GRAVITY
+from motion_tracker.core.hand_force_kernel import smooth_step
 
 Array = npt.NDArray[np.float64]
 
@@ -60,30 +61,6 @@ class HandForceSettings:
                 raise HandForceError(f'hand_force.{name}: must be positive, got {value}')
 
 
-def smooth_step(x: float) -> float:
-    """0 below 0, 1 above 1, cubic with level ends in between."""
-    s = min(max(x, 0.0), 1.0)
-    return s * s * (3.0 - 2.0 * s)
-
-
-def split(hands: Array, box: Array) -> float:
-    """Share of the right hand: 1 where the box is at the right hand, 0 at the left, half unknown.
-
-    Parameters
-    ----------
-    hands
-        Grip centres (2, 3) right, left [m].
-    box
-        Centre of the box (3,) [m].
-    """
-    span = hands[0] - hands[1]
-    span[2] = 0.0
-    length = float(span @ span)
-    if length < 1e-4:
-        return 0.5
-    return float(np.clip((box - hands[1]) @ span / length, 0.0, 1.0))
-
-
 class HandForceEstimator:
     """Estimator with the memory of one recording: bias, and the height the box rests at.
 
@@ -119,8 +96,7 @@ class HandForceEstimator:
 
     def gate(self, hands: Array, box: Array) -> float:
         """1 while both hands are at the box, 0 while one is well away from it."""
-        distance = float(np.max(np.linalg.norm(hands - box, axis=1)))
-        return 1.0 - smooth_step((distance - self._reach) / self.settings.fade)
+        return float(hand_force_kernel.gate(hands, box, self._reach, self.settings.fade))
 
     def held(self, hands: Array, box: Array, support: float | None) -> float | None:
         """Mass the hands carry at rest [kg]; None if the box may stand on something as well.
@@ -168,34 +144,39 @@ class HandForceEstimator:
                 weight = min(1.0, step / self.settings.bias_time)
                 self.support += weight * (float(box[2]) - self.support)
 
-    def estimate(self, missing: float | None, hands: Array, box: Array, acceleration: Array,
-                 support: float | None, since_end: float | None) -> Array:
-        """Force of the box on the [right, left] hand (2, 3) [N].
+    def estimate(self, missing: float | Array | None, hands: Array, box: Array,
+                 acceleration: Array, support: float | None, since_end: float | None) -> Array:
+        """Force of the box on the [right, left] hand [N], of one sample or of n at once.
 
         Parameters
         ----------
         missing
-            As in `observe`.
+            As in `observe`; (n,) for n samples.
         hands, box, acceleration
-            Grip centres (2, 3) [m], box centre (3,) [m] and its acceleration [m/s^2].
+            Grip centres (2, 3) [m], box centre (3,) [m] and its acceleration [m/s^2]; or
+            (n, 2, 3), (n, 3) and (n, 3).
         support
             Height the box was lifted from [m]; None: not known, nothing is carried.
         since_end
             Time since the end of the last lift was known [s]; None while one is under way or
             none was.
+
+        Returns
+        -------
+        ndarray (2, 3) or (n, 2, 3)
         """
-        if self.box_mass == 0.0 or not np.all(np.isfinite(box)):
-            return np.zeros((2, 3))
-        carried = 0.0 if support is None else smooth_step(
-            (float(box[2]) - support) / self.settings.free_rise)
-        if since_end is not None:
-            carried *= 1.0 - smooth_step(since_end / self.settings.release_time)
-        gravity = np.array([0.0, 0.0, STANDARD_GRAVITY])
-        free = -self.box_mass * (acceleration + gravity)
-        taken = 0.0
-        if missing is not None:
-            most = self.settings.largest_share * self.box_mass * STANDARD_GRAVITY
-            taken = self.gate(hands, box) * float(np.clip((self.bias or 0.0) - missing, 0.0, most))
-        total = carried * free + (1.0 - carried) * np.array([0.0, 0.0, -taken])
-        right = split(hands.copy(), box)
-        return np.stack([right * total, (1.0 - right) * total])
+        shape = hands.shape
+        if self.box_mass == 0.0:
+            return np.zeros(shape)
+        count = 1 if hands.ndim == 2 else len(hands)
+        less = np.full(count, np.nan) if missing is None else (self.bias or 0.0) - missing
+        released = 0.0 if since_end is None else smooth_step(
+            since_end / self.settings.release_time)
+        force: Array = hand_force_kernel.hand_forces(
+            self.box_mass, np.asarray(less, dtype=np.float64).reshape(count),
+            np.ascontiguousarray(hands).reshape(count, 2, 3),
+            np.ascontiguousarray(box).reshape(count, 3),
+            np.ascontiguousarray(acceleration).reshape(count, 3),
+            np.nan if support is None else support, released, self._reach, self.settings.fade,
+            self.settings.free_rise, self.settings.largest_share)
+        return force.reshape(shape)

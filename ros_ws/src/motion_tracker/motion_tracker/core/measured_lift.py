@@ -1,8 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""A whole lift from the recorded frames: gaps bridged, filters of zero phase."""
+"""A whole lift from the recorded frames: gaps bridged, filters of zero phase, in small steps."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from copy import copy
 
 import numpy as np
 import numpy.typing as npt
@@ -12,9 +13,14 @@ from human_model.report import SolveReport, SolveStatus
 from human_model.skeleton import Skeleton
 from motion_tracker.core.dynamics import needed_force
 from motion_tracker.core.filters import derivatives, zero_phase
-from motion_tracker.core.force_plates import SIDES, PlateGeometry, ground_reaction
+from motion_tracker.core.force_plates import (
+    SIDES,
+    GroundReaction,
+    PlateGeometry,
+    ground_reaction,
+)
 from motion_tracker.core.hand_force import HandForceEstimator
-from motion_tracker.core.streams import SampledStream
+from motion_tracker.core.streams import SampledStream, columns_at
 from motion_tracker.core.tracked import FrameRecord, MeasuredLift, TrackerSettings
 
 Array = npt.NDArray[np.float64]
@@ -51,8 +57,11 @@ class LiftBuilder:
 
     def build(self, lift_id: str, start: float, end: float, records: Sequence[FrameRecord],
               rate: float, estimator: HandForceEstimator, support: float | None,
-              doubt: str = '') -> MeasuredLift:
-        """Filter and combine everything between start and end [s].
+              doubt: str = '') -> Iterator[MeasuredLift | None]:
+        """Filter and combine everything between start and end [s], step by step.
+
+        One step takes about a millisecond, so that live frames need not wait for a whole lift.
+        What the estimator has learnt by now is what counts, whenever the steps are taken.
 
         Parameters
         ----------
@@ -68,33 +77,63 @@ class LiftBuilder:
             Height the box was lifted from [m]; None without a box.
         doubt
             Why the masses cannot be right, with fields and values; empty if nothing says so.
+
+        Yields
+        ------
+        None or MeasuredLift
+            The lift at the end of the last step.
         """
+        return self._steps(lift_id, start, end, records, rate, copy(estimator), support, doubt)
+
+    def _steps(self, lift_id: str, start: float, end: float, records: Sequence[FrameRecord],
+               rate: float, estimator: HandForceEstimator, support: float | None, doubt: str,
+               ) -> Iterator[MeasuredLift | None]:
         stamps = np.array([record.stamp for record in records])
         count = int(np.floor((stamps[-1] - stamps[0]) * rate + 1e-6)) + 1
         grid = stamps[0] + np.arange(count) / rate
+        inside = (grid >= start - 1e-9) & (grid <= end + 1e-9)
+        times = grid[inside]
         good = np.array([record.solution.ok for record in records])
         status, bridged = self._status(grid, stamps, good, records)
+        status = status[inside]
+        yield None
         usable = good if good.sum() >= 2 else np.array(
             [record.solution.used > 0 for record in records])
         rows = np.array([record.solution.q for record in records])[usable]
-        even = np.stack([np.interp(grid, stamps[usable], column) for column in rows.T], axis=1)
+        even = columns_at(grid, stamps[usable], rows)
+        yield None
         q = zero_phase(even, rate, self._settings.motion_cutoff)
+        yield None
         qd, qdd = derivatives(q, rate)
-        inside = (grid >= start - 1e-9) & (grid <= end + 1e-9)
-        times = grid[inside]
-        q, qd, qdd, status = q[inside], qd[inside], qdd[inside], status[inside]
-        forces, silent = self._ground(times)
+        q, qd, qdd = q[inside], qd[inside], qdd[inside]
+        yield None
+        feet = {}
+        for name in SIDES:
+            feet[name] = self._foot(name, times)
+            yield None
+        forces, silent = self._ground(times, feet)
         if silent:
             status[status == 0] = SolveStatus.TRACKER_NO_GROUND_FORCE
         if doubt:
             status[status == 0] = SolveStatus.TRACKER_MASS_MISMATCH
-        forces |= self._hands(grid, inside, rate, q, qd, qdd, estimator, support,
-                              None if silent else forces['ground_force'])
-        motion = self._skeleton.body_motion(times, q, qd, qdd, **forces)
+        places = self._skeleton.points_and_frames(q)
+        yield None
+        box = self._carried(grid, inside, rate, estimator)
+        if box is not None:
+            yield None
+            ground = None if silent else forces['ground_force']
+            missing = None if ground is None else (
+                needed_force(self._skeleton, q, qd, qdd)[:, 2] - ground[:, :, 2].sum(axis=1))
+            forces['box_position'] = box[0]
+            forces['hand_force'] = estimator.estimate(missing, places[0][:, _HANDS], *box, support,
+                                                      None)
+        yield None
+        motion = self._skeleton.body_motion(times, q, qd, qdd, places, **forces)
         rms, largest = self._residuals(times, records, stamps, rate)
+        yield None
         report = self._report(records, inside, status, bridged, silent, doubt)
         lift = Lift(lift_id, 'measured', start, end, estimator.box_mass, motion, report)
-        return MeasuredLift(lift, status, rms, largest)
+        yield MeasuredLift(lift, status, rms, largest)
 
     def _status(self, grid: Array, stamps: Array, good: npt.NDArray[np.bool_],
                 records: Sequence[FrameRecord]) -> tuple[IntArray, int]:
@@ -114,52 +153,40 @@ class LiftBuilder:
                 bridged += int(last - first)
         return status, bridged
 
-    def _ground(self, times: Array) -> tuple[dict[str, Array], list[str]]:
+    def _foot(self, name: str, times: Array) -> GroundReaction | None:
+        """Ground reaction on one foot; None if its plate has no samples for all of the lift."""
+        rows = self._wrenches[name].zero_phase_at(times, self._settings.plate_cutoff,
+                                                  self._settings.margin)
+        if rows is None:
+            return None
+        return ground_reaction(rows[:, :3], rows[:, 3:], self._plates[name],
+                               self._settings.force_threshold)
+
+    def _ground(self, times: Array, feet: Mapping[str, GroundReaction | None],
+                ) -> tuple[dict[str, Array], list[str]]:
         """Ground reaction by foot, and the plates without samples for all of the lift."""
         n = len(times)
         forces = {'ground_force': np.zeros((n, 2, 3)), 'cop': np.full((n, 2, 3), np.nan),
                   'free_moment': np.zeros((n, 2, 3))}
-        silent = []
-        for side, name in enumerate(SIDES):
-            rows = self._wrenches[name].zero_phase_at(times, self._settings.plate_cutoff,
-                                                      self._settings.margin)
-            if rows is None:
-                silent.append(name)
-                continue
-            foot = ground_reaction(rows[:, :3], rows[:, 3:], self._plates[name],
-                                   self._settings.force_threshold)
-            forces['ground_force'][:, side] = foot.force
-            forces['cop'][:, side] = foot.cop
-            forces['free_moment'][:, side] = foot.free_moment
-        return forces, silent
+        for side, foot in enumerate(feet.values()):
+            if foot is not None:
+                forces['ground_force'][:, side] = foot.force
+                forces['cop'][:, side] = foot.cop
+                forces['free_moment'][:, side] = foot.free_moment
+        return forces, [name for name, foot in feet.items() if foot is None]
 
-    def _hands(self, grid: Array, inside: npt.NDArray[np.bool_], rate: float, q: Array, qd: Array,
-               qdd: Array, estimator: HandForceEstimator, support: float | None,
-               ground: Array | None) -> dict[str, Array]:
-        """Box position (n, 3) and hand forces (n, 2, 3)."""
-        n = int(inside.sum())
-        none = {'hand_force': np.zeros((n, 2, 3)), 'box_position': np.full((n, 3), np.nan)}
+    def _carried(self, grid: Array, inside: npt.NDArray[np.bool_], rate: float,
+                 estimator: HandForceEstimator) -> tuple[Array, Array] | None:
+        """Box position (n, 3) [m] and acceleration (n, 3) [m/s^2]; None if there is no box."""
         if estimator.box_mass == 0.0:
-            return none
-        raw = [self._box.raw_at(float(time)) for time in grid]
-        known = np.array([row is not None for row in raw])
+            return None
+        rows = self._box.raw_rows_at(grid)
+        known = np.isfinite(rows[:, 0])
         if known.sum() < 2 or not known[inside].mean() > 0.5:
-            return none
-        rows = np.array([row for row in raw if row is not None])
-        even = np.stack([np.interp(grid, grid[known], column) for column in rows.T], axis=1)
-        box = zero_phase(even, rate, self._settings.motion_cutoff)
-        acceleration = derivatives(box, rate)[1][inside]
-        box = box[inside]
-        hands = self._skeleton.point_array(q)[:, _HANDS, :]
-        force = np.zeros((n, 2, 3))
-        for i in range(n):
-            missing = None
-            if ground is not None:
-                need = needed_force(self._skeleton, q[i], qd[i], qdd[i])
-                missing = float(need[2] - ground[i, :, 2].sum())
-            force[i] = estimator.estimate(missing, hands[i], box[i], acceleration[i], support,
-                                          None)
-        return {'hand_force': force, 'box_position': box}
+            return None
+        box = zero_phase(columns_at(grid, grid[known], rows[known]), rate,
+                         self._settings.motion_cutoff)
+        return box[inside], derivatives(box, rate)[1][inside]
 
     def _residuals(self, times: Array, records: Sequence[FrameRecord], stamps: Array,
                    rate: float) -> tuple[Array, Array]:

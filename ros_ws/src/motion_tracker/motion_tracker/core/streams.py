@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Buffers of sampled streams: checked on entry, filtered on the way, read at any time."""
 
+import math
 from bisect import bisect_left, bisect_right
 from collections import Counter
+from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +17,15 @@ Array = npt.NDArray[np.float64]
 
 #: Samples from which the rate of a stream is taken.
 RATE_SAMPLES = 10
+
+#: Longest step that is bridged by a line, in samples.
+LONGEST_BRIDGE = 5
+
+#: Difference of stamps that counts as none [s]; stamps of this century have steps of 0.24 us.
+SAME = 1e-9
+
+#: Rows for which a new stream has room.
+_ROOM = 1024
 
 
 def rate_of(stamps: npt.ArrayLike, name: str) -> float:
@@ -40,6 +51,9 @@ def rate_of(stamps: npt.ArrayLike, name: str) -> float:
 class SampledStream:
     """Samples of a fixed number of channels in the order of their stamps.
 
+    The causal filter runs when it is asked for: what has come since the last time passes it in
+    one call, with the same bits as sample by sample.
+
     Parameters
     ----------
     name
@@ -56,18 +70,17 @@ class SampledStream:
                  cutoff: float | None = None) -> None:
         self.name = name
         self.rate = 0.0
+        #: Stamp of the newest sample [s]; minus infinity when there is none.
+        self.last = -math.inf
         self._channels = channels
         self._counts = counts
         self._cutoff = cutoff
         self._filter: CausalFilter | None = None
         self._stamps: list[float] = []
-        self._raw: list[Array] = []
-        self._filtered: list[Array] = []
-
-    @property
-    def last(self) -> float:
-        """Stamp of the newest sample [s]; minus infinity when there is none."""
-        return self._stamps[-1] if self._stamps else -np.inf
+        # Rows beyond the number of stamps, and filtered rows from `_passed` on, are free room.
+        self._raw = np.empty((_ROOM, channels))
+        self._filtered = np.empty((_ROOM if cutoff is not None else 0, channels))
+        self._passed = 0
 
     @property
     def empty(self) -> bool:
@@ -79,37 +92,69 @@ class SampledStream:
         """Delay of the causal filter [s]."""
         return self._filter.delay if self._filter else 0.0
 
-    def push(self, stamp: float, sample: Array) -> bool:
+    def push(self, stamp: float, sample: Sequence[float] | Array) -> bool:
         """Take one sample; False if it was refused and counted."""
-        if not (np.isfinite(stamp) and np.all(np.isfinite(sample))):
+        # Thousands a second: plain numbers. A sum is finite only if all its terms are.
+        if not math.isfinite(stamp + sum(sample)):
             self._counts[f'{self.name}: not finite'] += 1
             return False
         if stamp <= self.last:
             kind = 'duplicate stamps' if stamp == self.last else 'unsorted stamps'
             self._counts[f'{self.name}: {kind}'] += 1
             return False
+        at = len(self._stamps)
+        if at == len(self._raw):
+            self._raw = _doubled(self._raw)
+            self._filtered = _doubled(self._filtered)
+        self._raw[at] = sample
         self._stamps.append(stamp)
-        self._raw.append(sample)
         if self.rate == 0.0:
-            if len(self._stamps) > RATE_SAMPLES:
+            if at == RATE_SAMPLES:
                 self._start()
         else:
-            self._pass(len(self._stamps) - 1)
+            self._look_for_gap(at, self.last)
+        self.last = stamp
         return True
 
     def settle(self) -> None:
         """End of the recording: a stream too short for a rate is dropped and counted."""
         if self.rate == 0.0 and self._stamps:
             self._counts[f'{self.name}: too short'] += len(self._stamps)
-            self._stamps, self._raw = [], []
+            self._stamps, self.last = [], -math.inf
 
     def filtered_at(self, time: float) -> Array | None:
         """Causally filtered sample whose content belongs to ``time``; None if there is none."""
-        return self._between(self._filtered, time + self.delay, len(self._filtered))
+        if self._filter is None:
+            return None
+        self._pass(len(self._stamps))
+        return self._between(self._filtered, time + self.delay)
 
     def raw_at(self, time: float) -> Array | None:
         """Raw sample at ``time`` by linear interpolation; None outside or in a gap."""
-        return self._between(self._raw, time, len(self._stamps))
+        return self._between(self._raw, time)
+
+    def raw_rows_at(self, times: Array) -> Array:
+        """Raw samples (n, channels) as `raw_at` gives them, all at once; NaN outside or in a gap.
+
+        ``times`` (n,) must not decrease.
+        """
+        rows = np.full((len(times), self._channels), np.nan)
+        first = max(0, bisect_left(self._stamps, times[0] - SAME) - 1)
+        last = bisect_right(self._stamps, times[-1] + SAME) + 1
+        stamps, raw = np.array(self._stamps[first:last]), self._raw[first:last]
+        if self.rate == 0.0 or not len(stamps):
+            return rows
+        after = np.searchsorted(stamps, times - SAME)
+        within = after < len(stamps)
+        b = np.minimum(after, len(stamps) - 1)
+        a = np.maximum(b - 1, 0)
+        same = within & (np.abs(stamps[b] - times) <= SAME)
+        step = stamps[b] - stamps[a]
+        between = within & ~same & (after > 0) & (step <= self._longest_gap())
+        share = ((times - stamps[a])[between] / step[between])[:, None]
+        rows[between] = (1.0 - share) * raw[a[between]] + share * raw[b[between]]
+        rows[same] = raw[b[same]]
+        return rows
 
     def zero_phase_at(self, times: Array, cutoff: float, margin: float) -> Array | None:
         """Zero-phase filtered samples (n, channels) at ``times``; None if not covered.
@@ -118,59 +163,87 @@ class SampledStream:
         """
         first = bisect_left(self._stamps, times[0] - margin)
         last = bisect_right(self._stamps, times[-1] + margin)
-        if last - first < 2 or self._stamps[first] > times[0] + 1e-9 \
-                or self._stamps[last - 1] < times[-1] - 1e-9:
+        if last - first < 2 or self._stamps[first] > times[0] + SAME \
+                or self._stamps[last - 1] < times[-1] - SAME:
             return None
         stamps = np.array(self._stamps[first:last])
         if np.diff(stamps).max() > self._longest_gap():
             return None
-        rows = np.array(self._raw[first:last])
         grid = stamps[0] + np.arange(int(np.floor((stamps[-1] - stamps[0]) * self.rate + 1e-6)) + 1
                                      ) / self.rate
-        even = np.stack([np.interp(grid, stamps, column) for column in rows.T], axis=1)
-        smooth = zero_phase(even, self.rate, cutoff)
-        return np.stack([np.interp(times, grid, column) for column in smooth.T], axis=1)
+        even = columns_at(grid, stamps, self._raw[first:last])
+        return columns_at(times, grid, zero_phase(even, self.rate, cutoff))
 
     def forget(self, before: float) -> None:
         """Drop samples older than ``before`` [s]."""
         drop = bisect_left(self._stamps, before)
-        if drop > 0:
-            del self._stamps[:drop], self._raw[:drop], self._filtered[:drop]
+        if drop == 0:
+            return
+        self._pass(len(self._stamps))
+        del self._stamps[:drop]
+        kept = len(self._stamps)
+        self._raw[:kept] = self._raw[drop:drop + kept]
+        if self._filter is not None:
+            self._filtered[:kept] = self._filtered[drop:drop + kept]
+            self._passed = kept
 
     def _longest_gap(self) -> float:
-        return 5.5 / self.rate
+        return (LONGEST_BRIDGE + 0.5) / self.rate
 
     def _start(self) -> None:
         self.rate = rate_of(self._stamps, self.name)
         if self._cutoff is not None:
             self._filter = CausalFilter(self.rate, self._cutoff, self._channels)
-        for at in range(len(self._stamps)):
-            self._pass(at)
+        for at in range(1, len(self._stamps)):
+            self._look_for_gap(at, self._stamps[at - 1])
 
-    def _pass(self, at: int) -> None:
+    def _look_for_gap(self, at: int, before: float) -> None:
+        """Count samples that the filter misses before row ``at``, and bridge them by a line."""
         if self._filter is None:
             return
-        if at > 0:
-            lost = round((self._stamps[at] - self._stamps[at - 1]) * self.rate) - 1
-            if lost > 0:
-                self._counts[f'{self.name}: lost samples'] += lost
-                if lost + 1 > 5:
-                    self._filter.reset()
-                else:
-                    for i in range(1, lost + 1):
-                        share = i / (lost + 1)
-                        self._filter.step((1.0 - share) * self._raw[at - 1]
-                                          + share * self._raw[at])
-        self._filtered.append(self._filter.step(self._raw[at])[0])
+        lost = round((self._stamps[at] - before) * self.rate) - 1
+        if lost <= 0:
+            return
+        self._counts[f'{self.name}: lost samples'] += lost
+        self._pass(at)
+        if lost + 1 > LONGEST_BRIDGE:
+            self._filter.reset()
+            return
+        for i in range(1, lost + 1):
+            share = i / (lost + 1)
+            self._filter.step((1.0 - share) * self._raw[at - 1] + share * self._raw[at])
 
-    def _between(self, rows: list[Array], time: float, count: int) -> Array | None:
-        after = bisect_left(self._stamps, time - 1e-9, 0, count)
-        if self.rate == 0.0 or after >= count:
+    def _pass(self, end: int) -> None:
+        """Let the rows before ``end`` that wait for it through the filter."""
+        if self._filter is not None and self._passed < end:
+            rows = self._filter.values(self._raw[self._passed:end])
+            self._filtered[self._passed:end] = rows
+            self._passed = end
+
+    def _between(self, rows: Array, time: float) -> Array | None:
+        stamps = self._stamps
+        after = bisect_left(stamps, time - SAME)
+        if self.rate == 0.0 or after >= len(stamps):
             return None
-        if abs(self._stamps[after] - time) <= 1e-9:
-            return rows[after]
-        if after == 0 or self._stamps[after] - self._stamps[after - 1] > self._longest_gap():
+        b = stamps[after]
+        if abs(b - time) <= SAME:
+            return np.array(rows[after])
+        if after == 0 or b - stamps[after - 1] > self._longest_gap():
             return None
-        a, b = self._stamps[after - 1], self._stamps[after]
+        a = stamps[after - 1]
         share = (time - a) / (b - a)
-        return np.asarray((1.0 - share) * rows[after - 1] + share * rows[after])
+        row: Array = (1.0 - share) * rows[after - 1] + share * rows[after]
+        return row
+
+
+def columns_at(times: Array, stamps: Array, rows: Array) -> Array:
+    """Rows (m, channels) of strictly increasing stamps (m,), linearly interpolated at times (n,).
+
+    As `numpy.interp` channel by channel.
+    """
+    return np.stack([np.interp(times, stamps, column) for column in rows.T], axis=1)
+
+
+def _doubled(rows: Array) -> Array:
+    """Return the rows with as much free room behind them."""
+    return np.concatenate([rows, np.empty_like(rows)])

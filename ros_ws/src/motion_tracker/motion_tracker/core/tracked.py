@@ -11,6 +11,7 @@ from human_model.motion import BodyMotion, Lift
 from human_model.report import SolveStatus
 from motion_tracker.core.errors import TrackerError
 from motion_tracker.core.filters import MOTION_CUTOFF, PLATE_CUTOFF
+from motion_tracker.core.force_plates import total_cop
 from motion_tracker.core.hand_force import HandForceSettings
 from motion_tracker.core.inverse_kinematics import IKSettings, IKSolution
 from motion_tracker.core.lift_events import LiftEvent, LiftEventSettings
@@ -79,8 +80,6 @@ class TrackedFrame:
     message : str
     filter_delay : float
         Time the sample left the tracker after it was taken [s].
-    total_force, total_cop : ndarray (3,)
-        Ground reaction of both feet [N] and its centre of pressure [m].
     """
 
     motion: BodyMotion
@@ -88,8 +87,16 @@ class TrackedFrame:
     status: SolveStatus
     message: str
     filter_delay: float
-    total_force: Array
-    total_cop: Array
+
+    @property
+    def total_force(self) -> Array:
+        """Ground reaction of both feet (3,) [N]."""
+        return np.asarray(self.motion.ground_force[0].sum(axis=0))
+
+    @property
+    def total_cop(self) -> Array:
+        """Centre of pressure of both feet (3,) [m]; NaN while neither is loaded."""
+        return np.asarray(total_cop(self.motion.ground_force, self.motion.cop)[0])
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,66 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Compiled kinematics of a block of instants: one call for a live sample or for a whole lift."""
+
+import numba
+import numpy as np
+import numpy.typing as npt
+
+from human_model.compiled import body_motion, segment_frames
+from human_model.compiled_quaternions import quaternions
+from human_model.tree import TreeArrays
+
+Array = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+
+@numba.njit(cache=True)
+def points_and_frames(tree: TreeArrays, q: Array, segment: IntArray, local: Array,
+                      frame_segment: IntArray) -> tuple[Array, Array]:
+    """Positions of points and orientations of segments at coordinates q (n, n_q).
+
+    Parameters are the points' segments (n_p,) and local positions (n_p, 3) [m], and the segments
+    (n_f,) of the frames. Returns positions (n, n_p, 3) [m] and quaternions (n, n_f, 4) xyzw.
+    """
+    n = q.shape[0]
+    points = np.empty((n, segment.shape[0], 3))
+    frames = np.empty((n, frame_segment.shape[0], 4))
+    for k in range(n):
+        rotation, origin = segment_frames(tree, q[k])
+        for i in range(segment.shape[0]):
+            s = segment[i]
+            for r in range(3):
+                points[k, i, r] = origin[s, r] + (
+                    rotation[s, r, 0] * local[i, 0] + rotation[s, r, 1] * local[i, 1]
+                    + rotation[s, r, 2] * local[i, 2])
+        frames[k] = quaternions(rotation[frame_segment])
+    return points, frames
+
+
+@numba.njit(cache=True)
+def outer_force(tree: TreeArrays, q: Array, qd: Array, qdd: Array, gravity: float) -> Array:
+    """Sum of the outer forces (n, 3) [N] that make a motion (n, n_q), world axes.
+
+    The mass of each segment times the acceleration of its centre of mass less gravity, which
+    acts along -z [m/s^2].
+    """
+    force = np.zeros((q.shape[0], 3))
+    arm, spun = np.empty(3), np.empty(3)
+    for k in range(q.shape[0]):
+        rotation, _, _, omega, alpha, _, acceleration = body_motion(tree, q[k], qd[k], qdd[k])
+        for s in range(tree.segment_body.shape[0]):
+            b = tree.segment_body[s]
+            for i in range(3):
+                arm[i] = 0.0
+                for j in range(3):
+                    arm[i] += rotation[b, i, j] * (tree.segment_offset[s, j] + tree.com[s, j])
+            for i in range(3):
+                j, m = (i + 1) % 3, (i + 2) % 3
+                spun[i] = omega[b, j] * arm[m] - omega[b, m] * arm[j]
+            for i in range(3):
+                j, m = (i + 1) % 3, (i + 2) % 3
+                force[k, i] += tree.mass[s] * (
+                    acceleration[b, i] + (alpha[b, j] * arm[m] - alpha[b, m] * arm[j])
+                    + (omega[b, j] * spun[m] - omega[b, m] * spun[j]))
+        force[k, 2] += gravity * tree.mass.sum()
+    return force

@@ -1,0 +1,170 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""The live sample of one marker frame: everything at the instant its filters are behind.
+
+The instant is the stamp of the frame minus the delay of the motion filter; the plates, whose
+filter is faster, are read that much earlier.
+"""
+
+from collections import Counter
+from collections.abc import Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+from human_model.motion import POINTS
+from human_model.skeleton import Skeleton
+from motion_tracker.core.dynamics import needed_force
+from motion_tracker.core.filters import CausalFilter
+from motion_tracker.core.force_plates import SIDES, PlateGeometry, ground_reaction
+from motion_tracker.core.hand_force import HandForceEstimator
+from motion_tracker.core.inverse_kinematics import IKSolution
+from motion_tracker.core.live_status import LiveStatus
+from motion_tracker.core.streams import SampledStream
+from motion_tracker.core.tracked import Notice, TrackedFrame, TrackerSettings
+
+Array = npt.NDArray[np.float64]
+
+#: Right, then left grip centre among the shared points.
+HANDS = slice(POINTS.index('hand_r'), POINTS.index('hand_l') + 1)
+
+
+class LiveMotion:
+    """Causal filters and all that hangs on them, for one recording.
+
+    Parameters
+    ----------
+    skeleton
+        Of the person.
+    rate
+        Of the marker frames [Hz].
+    settings
+        Of the tracker.
+    plates, wrenches
+        Geometry, and streams of force and moment, by side.
+    hand_force, status
+        Of the recording; they learn from each sample.
+    counts
+        Where lost frames are counted.
+    """
+
+    def __init__(self, skeleton: Skeleton, rate: float, settings: TrackerSettings,
+                 plates: Mapping[str, PlateGeometry], wrenches: Mapping[str, SampledStream],
+                 hand_force: HandForceEstimator, status: LiveStatus, counts: Counter[str],
+                 ) -> None:
+        self._skeleton = skeleton
+        self._rate = rate
+        self._settings = settings
+        self._plates = [plates[name] for name in SIDES]
+        self._wrenches = [wrenches[name] for name in SIDES]
+        self._hand_force = hand_force
+        self._status = status
+        self._counts = counts
+        self._filter = CausalFilter(rate, settings.motion_cutoff, len(skeleton.coordinates))
+        self._box_filter = CausalFilter(rate, settings.motion_cutoff, 3)
+        self._input: tuple[float, Array] | None = None
+
+    @property
+    def delay(self) -> float:
+        """Delay of the samples [s]."""
+        return self._filter.delay
+
+    def sample(self, stamp: float, solution: IKSolution, box: Array | None, lifting: bool,
+               end_known: float | None) -> tuple[TrackedFrame, list[Notice]]:
+        """Sample that a marker frame completes, and what is to be said of the masses.
+
+        Parameters
+        ----------
+        stamp, solution
+            Of the marker frame [s].
+        box
+            Centre of the box (3,) at the stamp [m]; None if there is none.
+        lifting, end_known
+            Whether a lift is under way, and the stamp at which the end of the last one was known.
+        """
+        (q, qd, qdd), carried = self._filtered(stamp, solution.q, box)
+        time = stamp - self.delay
+        forces, silent = self._ground(time)
+        places = self._skeleton.points_and_frames(q)
+        hands = places[0][0, HANDS]
+        notices: list[Notice] = []
+        missing = None
+        if not silent:
+            vertical = float(forces['ground_force'][0, :, 2].sum())
+            need = float(needed_force(self._skeleton, q, qd, qdd)[2])
+            missing = need - vertical
+        if carried is not None:
+            forces |= self._carry(time, hands, carried, missing, self._status.settling(stamp),
+                                  lifting, end_known)
+        if missing is not None:
+            held = self._held(hands, None if carried is None else carried[0], lifting)
+            check = self._status.weigh(stamp, vertical, need, held, self._rate)
+            if check is not None:
+                notices.append(Notice(str(check), check.ok))
+        motion = self._skeleton.body_motion(time, q, qd, qdd, places, **forces)
+        status, message = self._status.judge(stamp, solution, ' and '.join(silent))
+        return TrackedFrame(motion, solution, status, message, self.delay), notices
+
+    def _filtered(self, stamp: float, q: Array, box: Array | None,
+                  ) -> tuple[tuple[Array, Array, Array], tuple[Array, Array, Array] | None]:
+        """Pass one frame, and the lost ones before it by interpolation, through the filters."""
+        lost = 0
+        if self._input is not None:
+            lost = round((stamp - self._input[0]) * self._rate) - 1
+        if lost > 0:
+            self._counts['markers: lost frames'] += lost
+        if lost > self._settings.longest_gap * self._rate + 1e-9:
+            self._filter.reset()
+            self._box_filter.reset()
+            self._status.settle(stamp, 'the filters settle after a gap in the markers')
+            lost = 0
+        for i in range(1, lost + 1):
+            share = i / (lost + 1)
+            assert self._input is not None
+            self._filter.step((1.0 - share) * self._input[1] + share * q)
+        self._input = stamp, q
+        if box is None:
+            self._box_filter.reset()
+            return self._filter.step(q), None
+        for _ in range(lost):
+            self._box_filter.step(box)
+        return self._filter.step(q), self._box_filter.step(box)
+
+    def _ground(self, time: float) -> tuple[dict[str, Array], list[str]]:
+        """Ground reaction (1, 2, 3) if all plates have samples; else those that have none."""
+        force, cop, free = np.empty((1, 2, 3)), np.empty((1, 2, 3)), np.empty((1, 2, 3))
+        silent = []
+        for side, stream in enumerate(self._wrenches):
+            row = stream.filtered_at(time)
+            if row is None:
+                silent.append(f'the {SIDES[side]} plate')
+                continue
+            foot = ground_reaction(row[:3], row[3:], self._plates[side],
+                                   self._settings.force_threshold)
+            force[:, side], cop[:, side], free[:, side] = foot.force, foot.cop, foot.free_moment
+        return ({} if silent else {'ground_force': force, 'cop': cop, 'free_moment': free}), silent
+
+    def _held(self, hands: Array, box: Array | None, lifting: bool) -> float | None:
+        """Mass in the hands [kg]; None while it is not known."""
+        if self._hand_force.box_mass == 0.0:
+            return 0.0
+        if box is None:
+            return None if lifting else 0.0
+        return self._hand_force.held(hands, box, self._hand_force.support if lifting else None)
+
+    def _carry(self, time: float, hands: Array, box: tuple[Array, Array, Array],
+               missing: float | None, settling: bool, lifting: bool, end_known: float | None,
+               ) -> dict[str, Array]:
+        """Hand forces (1, 2, 3) [N] and box position (1, 3) [m] of the live sample.
+
+        The bias of `missing` is learnt from samples of settled filters only.
+        """
+        position, speed, acceleration = box
+        since = None if end_known is None else time - end_known
+        released = since is None or since > self._settings.hand_force.release_time
+        self._hand_force.observe(None if settling else missing, hands, position, float(speed[2]),
+                                 lifting or not released, 1.0 / self._rate,
+                                 self._settings.events.rest_speed)
+        force = self._hand_force.estimate(missing, hands, position, acceleration,
+                                          self._hand_force.support, since)
+        return {'hand_force': force[None], 'box_position': position[None]}
