@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections import Counter
 
+from builtin_interfaces.msg import Time
 from lifting_interfaces.msg import JointTorques, MuscleAnalysis, SpineLoad
 from std_msgs.msg import Header
 
@@ -51,7 +52,8 @@ class ProbedMonitorNode(InjuryMonitorNode):
         self._parts[key] += 1
         if self._parts[key] == PARTS:
             del self._parts[key]
-            self._judged.publish(Header(stamp=stamp))
+            # A stamp of its own: the message is but a view of a serialised one.
+            self._judged.publish(Header(stamp=Time(sec=stamp.sec, nanosec=stamp.nanosec)))
 
 
 if __name__ == '__main__':

@@ -34,6 +34,12 @@ from lifting_node.stamps import to_seconds, to_stamp
 
 Block = SpineLoad | JointTorques | MuscleAnalysis
 
+#: What the monitor looks at in the analyzer's messages: in each, and in one of a kind.
+BLOCK = ('header', 'lift_id', 'source', 'time_from_start', 'status')
+SPINE = ('compression', 'anterior_shear')
+TORQUES = ('joint_names', 'torque', 'torque_lower', 'torque_upper')
+ACTIVATIONS = ('muscle_names', 'activation')
+
 _SOURCES = {SpineLoad.MEASURED: MEASURED, SpineLoad.PREDICTED: PREDICTED}
 
 
@@ -69,13 +75,13 @@ def work_from_msg(subject: Subject, task: Task) -> Work:
 
 def block_clock(message: Block) -> tuple[FloatArray, BoolArray]:
     """Return time [s] and solve flag of each sample of a block, both (n,)."""
-    name = type(message).__name__
-    time = to_seconds(message.header.stamp) + np.asarray(message.time_from_start, np.float64)
-    status = np.asarray(message.status, np.int64)
-    if time.size == 0 or status.shape != time.shape:
-        raise InvalidInputError(f'{name}.status', status.size,
+    start = to_seconds(message.header.stamp)
+    time = np.array([start + seconds for seconds in message.time_from_start.tolist()], np.float64)
+    solved = np.array([code == 0 for code in message.status.tolist()], np.bool_)
+    if time.size == 0 or solved.shape != time.shape:
+        raise InvalidInputError(f'{type(message).__name__}.status', solved.size,
                                 f'must have one entry for each of the {time.size} samples')
-    return time, status == 0
+    return time, solved
 
 
 def rows(message: object, field: str, n: int, width: int) -> FloatArray:
@@ -90,8 +96,7 @@ def rows(message: object, field: str, n: int, width: int) -> FloatArray:
 def spine_from_msg(message: SpineLoad) -> SpineSeries:
     """Return the L5-S1 load of a block."""
     time, solved = block_clock(message)
-    compression, shear = (rows(message, field, time.size, 1)[:, 0]
-                          for field in ('compression', 'anterior_shear'))
+    compression, shear = (rows(message, field, time.size, 1)[:, 0] for field in SPINE)
     return SpineSeries(time, compression, shear, solved)
 
 
@@ -99,7 +104,7 @@ def torques_from_msg(message: JointTorques) -> TorqueSeries:
     """Return the joint torques of a block."""
     time, solved = block_clock(message)
     torque, lower, upper = (rows(message, field, time.size, len(message.joint_names))
-                            for field in ('torque', 'torque_lower', 'torque_upper'))
+                            for field in TORQUES[1:])
     return TorqueSeries(time, tuple(message.joint_names), torque, lower, upper, solved)
 
 

@@ -136,8 +136,15 @@ def test_more_loads_than_the_source_covers_is_said():
 def test_bad_series_are_refused_by_field():
     with pytest.raises(InvalidInputError, match=r'LiftLoads\.compression'):
         replace(loads(1.0, 1.0), compression=np.full(len(TIME), np.nan))
-    with pytest.raises(InvalidInputError, match=r'LiftLoads\.time'):
-        replace(loads(1.0, 1.0), time=TIME[::-1])
+    unsolved = replace(loads(1.0, 1.0), compression=np.full(len(TIME), np.nan), solved=~GOOD)
+    assert np.all(np.isnan(unsolved.compression))
+    for time in (TIME[::-1], np.where(TIME[3] == TIME, np.nan, TIME), TIME[:, None]):
+        with pytest.raises(InvalidInputError, match=r'LiftLoads\.time'):
+            replace(loads(1.0, 1.0), time=time)
+    with pytest.raises(InvalidInputError, match=r'LiftLoads\.time = \[\]: must not be empty'):
+        replace(loads(1.0, 1.0), time=TIME[:0])
+    with pytest.raises(InvalidInputError, match=r'LiftLoads\.solved = \(3,\)'):
+        replace(loads(1.0, 1.0), solved=GOOD[:3])
     with pytest.raises(InvalidInputError, match=r'TorqueSeries\.lower'):
         TorqueSeries(TIME, ('hip',), np.zeros((len(TIME), 1)), np.zeros(3),
                      np.zeros((len(TIME), 1)), GOOD)

@@ -19,6 +19,7 @@ from lifting_interfaces.msg import (
     Subject,
     Task,
 )
+from rclpy.serialization import serialize_message
 
 from injury_monitor import conversions
 from injury_monitor.core.alarm import AlarmState
@@ -26,6 +27,7 @@ from injury_monitor.core.exceptions import InvalidInputError
 from injury_monitor.core.lifting_equation import Coupling
 from injury_monitor.core.loads import LiftLoads
 from injury_monitor.core.monitor import InjuryMonitor
+from lifting_node.message_view import MessageView
 from lifting_node.stamps import to_seconds, to_stamp
 
 SUBJECT = Subject(pseudonym='P01', mass=63.5)
@@ -89,6 +91,31 @@ def test_row_major_blocks_keep_samples_and_columns_apart():
         time_from_start=[0.0], muscle_names=['a', 'b', 'c'], activation=[0.1, 0.2, 0.3],
         status=[0]))
     np.testing.assert_array_equal(active.activation, [[0.1, 0.2, 0.3]])
+
+
+@pytest.mark.parametrize(('message', 'read', 'columns'), [
+    (SpineLoad(source=SpineLoad.MEASURED, time_from_start=[0.0, 0.1], compression=[1.0, 2.0],
+               anterior_shear=[3.0, 4.0], status=[0, 302]),
+     conversions.spine_from_msg, conversions.SPINE),
+    (JointTorques(source=JointTorques.PREDICTED, time_from_start=[0.0], joint_names=['a', 'b'],
+                  torque=[1.0, 2.0], torque_lower=[-1.0, math.nan], torque_upper=[5.0, math.nan],
+                  status=[0]),
+     conversions.torques_from_msg, conversions.TORQUES),
+    (MuscleAnalysis(source=MuscleAnalysis.LIVE, time_from_start=[0.0], muscle_names=['a', 'b'],
+                    activation=[0.1, 0.2], force=[10.0, 20.0], status=[0]),
+     conversions.activations_from_msg, conversions.ACTIVATIONS)])
+def test_what_the_node_sees_of_a_message_is_what_is_in_it(message, read, columns):
+    stamped(message, 1_763_000_000.25).lift_id = 'lift_001'
+    kind = type(message)
+    view = MessageView(kind, (*conversions.BLOCK, *columns)).read(serialize_message(message))
+    assert view.lift_id == 'lift_001'
+    assert conversions.lift_source(view) == conversions.lift_source(message)
+    seen, expected = vars(read(view)), vars(read(message))
+    for name, value in expected.items():
+        np.testing.assert_array_equal(seen[name], value)
+    view.status = view.status[:0]
+    with pytest.raises(InvalidInputError, match=rf'{kind.__name__}\.status'):
+        read(view)
 
 
 def test_ends_of_a_lift_are_taken_at_its_start_and_end():

@@ -27,6 +27,7 @@ from lifting_interfaces.msg import (  # noqa: E402
 )
 from lifting_interfaces.srv import AcknowledgeAlarm, ResetAlarm, ShelveAlarm  # noqa: E402
 from rclpy.executors import SingleThreadedExecutor  # noqa: E402
+from rclpy.serialization import serialize_message  # noqa: E402
 
 from injury_monitor.injury_monitor_node import InjuryMonitorNode  # noqa: E402
 from lifting_node import qos  # noqa: E402
@@ -233,6 +234,10 @@ def test_bad_messages_are_counted_and_the_node_goes_on(station):
     station.send('task', Task(task_id='bad', coupling=Task.COUPLING_GOOD, box_mass=-1.0))
     station.until(lambda: station.node.counts['errors'] == 2, 'second error')
     assert 'box_mass' in station.node.last_error
+    torques = JointTorques(source=JointTorques.LIVE, joint_names=['knee'], torque=[1.0])
+    station.send('joint_torques', serialize_message(torques).replace(b'knee', b'\xff\xff\xff\xff'))
+    station.until(lambda: station.node.counts['errors'] == 3, 'third error')
+    assert 'JointTorques.joint_names' in station.node.last_error
     station.live(0.0, [7000.0] * 50, status=302)
     station.live(10.0, [7000.0] * 50)
     station.until(lambda: len(station.alarms) == 2, 'alarms from good samples')

@@ -8,7 +8,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from injury_monitor.core.exceptions import InvalidInputError
-from injury_monitor.core.torque_index import torque_index, torque_index_peaks
+from injury_monitor.core.torque_index import (
+    torque_index,
+    torque_index_peaks,
+    worst_torque_index,
+)
 
 
 def test_the_bound_on_the_side_of_the_torque_is_used():
@@ -31,12 +35,30 @@ def test_index_is_one_exactly_at_the_bounds_and_below_inside(torque, lower, uppe
     assert torque_index(np.array(lower), np.array(lower), np.array(upper)) == 1.0
 
 
+BOUND = st.floats(0, 500) | st.sampled_from([0.0, np.nan])
+JOINT = st.tuples(st.floats(-500, 500) | st.sampled_from([0.0, -0.0]), BOUND, BOUND)
+
+
+@given(st.lists(JOINT, max_size=6))
+def test_the_worst_joint_of_a_sample_is_that_of_all_its_indices(joints):
+    torque, lower, upper = np.array(joints, np.float64).reshape(-1, 3).T
+    index = torque_index(torque, -lower, upper)
+    worst = worst_torque_index(torque, -lower, upper)
+    if np.all(np.isnan(index)):
+        assert worst is None
+    else:
+        assert worst == (np.nanargmax(index), np.nanmax(index))
+
+
 @pytest.mark.parametrize(('torque', 'lower', 'upper', 'field'), [
     ([1.0], [1.0], [2.0], 'lower'), ([1.0], [-1.0], [-2.0], 'upper'),
     ([np.nan], [-1.0], [1.0], 'torque'), ([1.0], [-1.0, -1.0], [1.0], 'lower')])
 def test_bad_bounds_are_refused(torque, lower, upper, field):
     with pytest.raises(InvalidInputError, match=field):
         torque_index(np.array(torque), np.array(lower), np.array(upper))
+    if len(torque) == len(lower):
+        with pytest.raises(InvalidInputError, match=field):
+            worst_torque_index(np.array(torque), np.array(lower), np.array(upper))
 
 
 def test_peaks_leave_out_unsolved_samples():

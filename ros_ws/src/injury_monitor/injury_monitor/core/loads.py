@@ -4,26 +4,32 @@
 
 from __future__ import annotations
 
+import math
+import operator
 from dataclasses import dataclass
 
 import numpy as np
 
 from injury_monitor.core.exceptions import InvalidInputError
-from injury_monitor.core.validation import BoolArray, FloatArray, array
+from injury_monitor.core.validation import BoolArray, FloatArray, all_finite, array
 
 
 def _series(owner: object, time: FloatArray, solved: BoolArray) -> None:
     """Check the clock and the solve flags that every series has."""
-    n = np.asarray(time).size
+    name = type(owner).__name__
+    stamps = np.asarray(time, dtype=np.float64)
+    n = stamps.size
     if n == 0:
-        raise InvalidInputError(f'{type(owner).__name__}.time', [], 'must not be empty')
-    stamps = array(f'{type(owner).__name__}.time', time, (n,))
-    if not np.all(np.isfinite(stamps)) or np.any(np.diff(stamps) <= 0.0):
-        raise InvalidInputError(f'{type(owner).__name__}.time', stamps.tolist()[:5],
-                                'must be finite and increase')
-    array(f'{type(owner).__name__}.solved', solved, (n,))
+        raise InvalidInputError(f'{name}.time', [], 'must not be empty')
+    array(f'{name}.time', stamps, (n,))
+    seconds = stamps.tolist()
+    if not all(map(math.isfinite, seconds)) or not all(map(operator.lt, seconds, seconds[1:])):
+        raise InvalidInputError(f'{name}.time', seconds[:5], 'must be finite and increase')
+    flags = np.asarray(solved, dtype=bool)
+    if flags.shape != (n,):
+        raise InvalidInputError(f'{name}.solved', flags.shape, f'must have the shape {(n,)}')
     object.__setattr__(owner, 'time', stamps)
-    object.__setattr__(owner, 'solved', np.asarray(solved, dtype=bool))
+    object.__setattr__(owner, 'solved', flags)
 
 
 def _column(owner: object, field: str, shape: tuple[int, ...], solved: BoolArray,
@@ -31,8 +37,7 @@ def _column(owner: object, field: str, shape: tuple[int, ...], solved: BoolArray
     """Check the shape of a field and that solved rows are finite."""
     name = f'{type(owner).__name__}.{field}'
     values = array(name, getattr(owner, field), shape)
-    good = values[np.asarray(solved, dtype=bool)]
-    if not may_be_unknown and not np.all(np.isfinite(good)):
+    if not (may_be_unknown or all_finite(values) or all_finite(values[solved])):
         raise InvalidInputError(name, 'NaN', 'must be finite in every solved sample')
     object.__setattr__(owner, field, values)
 

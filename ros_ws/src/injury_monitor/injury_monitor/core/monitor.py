@@ -25,8 +25,8 @@ from injury_monitor.core.limits import LimitSet, limits_for
 from injury_monitor.core.loads import LiftLoads
 from injury_monitor.core.rnle_assessment import LiftEnds
 from injury_monitor.core.station_alarm import Sample, StationAlarm
-from injury_monitor.core.torque_index import torque_index
-from injury_monitor.core.validation import array, finite, positive
+from injury_monitor.core.torque_index import worst_torque_index
+from injury_monitor.core.validation import all_finite, array, finite, positive
 from injury_monitor.core.work import Work
 
 # Longest shelving [s]: one shift, so that no alarm stays shelved into the next one
@@ -169,21 +169,21 @@ class InjuryMonitor:
         shape = (len(joints),)
         values = [array(field, value, shape) for field, value in
                   (('torque', torque), ('lower', lower), ('upper', upper))]
-        good = solved and bool(np.all(np.isfinite(values[0])))
-        index = torque_index(*values) if good else np.empty(0)
-        good = good and not bool(np.all(np.isnan(index)))
-        if not self._admit('joint_torques', stamp, good, _QUANTITIES[2:3]):
+        good = solved and all_finite(values[0])
+        worst = worst_torque_index(*values) if good else None
+        admitted = self._admit('joint_torques', stamp, worst is not None, _QUANTITIES[2:3])
+        if not admitted or worst is None:
             return []
-        k = int(np.nanargmax(index))
-        return self._drive('joint_torque_index', Sample(stamp, float(index[k]), lift_id,
-                                                        joints[k], historical))
+        k, index = worst
+        return self._drive('joint_torque_index', Sample(stamp, index, lift_id, joints[k],
+                                                        historical))
 
     def update_activations(self, stamp: float, muscles: Sequence[str],
                            activation: npt.ArrayLike, solved: bool, lift_id: str = '',
                            historical: bool = False) -> list[AlarmEvent]:
         """Take one live sample of the muscle activations [0..1], (n_m,)."""
         values = array('activation', activation, (len(muscles),))
-        good = solved and len(muscles) > 0 and bool(np.all(np.isfinite(values)))
+        good = solved and len(muscles) > 0 and all_finite(values)
         if not self._admit('activations', stamp, good, _QUANTITIES[3:]):
             return []
         mean = self._mean.add(stamp, values)
@@ -251,24 +251,26 @@ class InjuryMonitor:
         finite(f'{stream}.stamp', stamp)
         counts = self.counts[stream]
         last = self._stamps.get(stream, -math.inf)
-        alarms = [alarm for quantity in quantities for alarm in self._by_quantity[quantity]]
         if stamp <= last:
             if last - stamp <= self.max_gap:
                 counts.out_of_order += 1
                 return False
             counts.restarts += 1
-            for alarm in alarms:
+            for alarm in self._alarms_of(quantities):
                 alarm.condition.restart()
             if stream == 'activations':
                 self._mean.reset()
         self._stamps[stream] = stamp
         if not good:
             counts.unsolved += 1
-            for alarm in alarms:
+            for alarm in self._alarms_of(quantities):
                 alarm.condition.interrupt()
             return False
         counts.used += 1
         return True
+
+    def _alarms_of(self, quantities: Sequence[str]) -> list[StationAlarm]:
+        return [alarm for quantity in quantities for alarm in self._by_quantity[quantity]]
 
     def _drive(self, quantity: str, sample: Sample) -> list[AlarmEvent]:
         events: list[AlarmEvent] = []

@@ -52,3 +52,12 @@ def array(field: str, value: Any, shape: tuple[int, ...]) -> FloatArray:
     if result.shape != shape:
         raise InvalidInputError(field, result.shape, f'must have the shape {shape}')
     return result
+
+
+def all_finite(values: FloatArray) -> bool:
+    """Return whether no value is NaN or infinite.
+
+    A sum of squares is finite unless a value is not, or beyond 1e154: only then each is looked
+    at, which takes four times as long for a live sample.
+    """
+    return math.isfinite(np.vdot(values, values)) or bool(np.all(np.isfinite(values)))
