@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import gc
 import importlib
 import threading
 from collections import Counter
@@ -12,6 +11,7 @@ from collections.abc import Callable
 from typing import Any, ClassVar
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from rclpy.clock import Clock, ClockType
 from rclpy.lifecycle import (
     LifecycleNode,
     LifecyclePublisher,
@@ -21,6 +21,7 @@ from rclpy.lifecycle import (
 from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
 
+from lifting_node.garbage import TimedSearch
 from lifting_node.parameters import declare, load_table
 
 
@@ -43,10 +44,13 @@ class PipelineNode(LifecycleNode):
         self.counts: Counter[str] = Counter()
         self.last_error = ''
         self.active = False
+        self._search = TimedSearch()
         self._inputs: list[Subscription] = []
         self._outputs: list[LifecyclePublisher] = []
         self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', 10)
-        self.create_timer(1.0, self._publish_health)
+        self.create_timer(
+            1.0, self._each_second, clock=Clock(clock_type=ClockType.STEADY_TIME)
+        )
 
     def build(self) -> None:
         """Load the model, create the pipeline, publishers and subscriptions (the slow part)."""
@@ -100,14 +104,9 @@ class PipelineNode(LifecycleNode):
         return TransitionCallbackReturn.SUCCESS
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Start publishing; load in the background what is needed later.
-
-        What has been loaded by now stays: searching it for garbage again and again would hold up
-        a live sample by tens of milliseconds.
-        """
+        """Start publishing; load in the background what is needed later."""
         self.active = True
-        gc.collect()
-        gc.freeze()
+        self._search.begin()
         threading.Thread(target=self._load_later, name='load later').start()
         return super().on_activate(state)
 
@@ -118,6 +117,7 @@ class PipelineNode(LifecycleNode):
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Stop publishing; the pipeline keeps its state."""
         self.active = False
+        self._search.end()
         return super().on_deactivate(state)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -127,6 +127,11 @@ class PipelineNode(LifecycleNode):
         while self._outputs:
             self.destroy_publisher(self._outputs.pop())
         return TransitionCallbackReturn.SUCCESS
+
+    def _each_second(self) -> None:
+        if self.active:
+            self._search.step()
+        self._publish_health()
 
     def _publish_health(self) -> None:
         status = DiagnosticStatus(
