@@ -40,10 +40,14 @@ class Problem:
     message: str = ''
 
 
+#: Nothing is wrong.
+NONE = Problem()
+
+
 def tracker_problem(status: int) -> Problem:
     """Give what a sample's tracker status means for its analysis; only 0 is usable."""
     if status == 0:
-        return Problem()
+        return NONE
     known = status in SolveStatus.__members__.values()
     message = f'motion tracker: {SolveStatus(status).name if known else f"status {status}"}'
     if status == SolveStatus.TRACKER_NO_GROUND_FORCE:
