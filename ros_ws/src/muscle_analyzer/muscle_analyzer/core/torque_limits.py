@@ -18,12 +18,13 @@ from importlib.resources.abc import Traversable
 import numpy as np
 from numpy.typing import NDArray
 
-from human_model.frames import matrix_from_quaternion
 from human_model.motion import BodyMotion
-from human_model.strength import JointStrength, StrengthBound, surface
+from human_model.strength import JointStrength
 from human_model.subject import Subject
 from muscle_analyzer.core.exceptions import InputArrayError, OptionError
+from muscle_analyzer.core.held import hold
 from muscle_analyzer.core.muscle_analysis import MuscleAnalysis
+from muscle_analyzer.core.torque_arrays import TorqueTable, torques_and_limits
 
 Array = NDArray[np.float64]
 
@@ -162,19 +163,27 @@ class TorqueLimits:
         # The sagittal skeleton has the strength of both limbs in one coordinate; where its
         # coordinate is no pair (the spine, which it has one joint for) its own strength counts.
         strength = [own if row.coordinate in coordinates else limb for row in self.rows]
-        sides = ('lower', 'upper')
         bounds = [
             [of.bound(row.coordinate, side) for of, row in zip(strength, self.rows, strict=True)]
-            for side in sides
+            for side in ('lower', 'upper')
         ]
-        self._bounds = _Surfaces.of(bounds)
         # What the sagittal skeleton has no coordinate for is held at zero in it.
-        self._column = np.array(
-            [
-                next((coordinates.index(c) for c in _names(row) if c in coordinates), -1)
-                for row in self.rows
-            ]
+        column = [
+            next((coordinates.index(c) for c in _names(row) if c in coordinates), -1)
+            for row in self.rows
+        ]
+        self._table = TorqueTable(
+            of_net_moment=np.array([row.of_net_moment for row in self.rows]),
+            source=np.full(len(self.rows), -1),
+            sign=np.array([row.sign for row in self.rows]),
+            column=np.array(column),
+            **{
+                name: np.array([[getattr(bound, name) for bound in side] for side in bounds])
+                for name in ('coefficients', 'magnitude', 'angle_factor', 'speed_factor')
+            },
         )
+        self._coordinates: tuple[str, ...] = ()
+        self._held = hold(self._table)
 
     def of(self, analysis: MuscleAnalysis, motion: BodyMotion) -> JointTorques:
         """
@@ -197,68 +206,39 @@ class TorqueLimits:
                 f'{motion.skeleton} motion of {len(motion)} samples is not the {self._skeleton} '
                 f'motion of the {len(analysis)} samples analysed'
             )
-        angle, speed = (
-            np.where(self._column >= 0, values[:, self._column], 0.0)
-            for values in (motion.position, motion.velocity)
+        if analysis.coordinate_names != self._coordinates:
+            self._coordinates = analysis.coordinate_names
+            self._held = hold(self._table._replace(source=self._sources()))
+        torque, lower, upper = torques_and_limits(
+            self._held,
+            motion.position,
+            motion.velocity,
+            motion.frames,
+            motion.frame_names.index('pelvis'),
+            analysis.net_moment_top_down,
+            analysis.torque,
         )
-        lower, upper = self._bounds(angle, speed)
         return JointTorques(
             analysis.lift_id,
             analysis.source,
             analysis.time,
             self.joint_names,
-            self._torque(analysis, motion),
-            # A fitted surface may cross zero where the joint has no strength left.
-            np.minimum(lower, 0.0),
-            np.maximum(upper, 0.0),
+            torque,
+            lower,
+            upper,
             analysis.torque_status,
         )
 
-    def _torque(self, analysis: MuscleAnalysis, motion: BodyMotion) -> Array:
-        pelvis = matrix_from_quaternion(motion.frames[:, motion.frame_names.index('pelvis')])
-        moment = np.einsum('nij,ni->nj', pelvis, analysis.net_moment_top_down)
-        columns = [
-            row.sign
-            * (
-                moment[:, PELVIS_AXES[row.name]]
-                if row.of_net_moment
-                else analysis.torque[:, analysis.coordinate_names.index(row.name)]
-            )
-            for row in self.rows
-        ]
-        return np.stack(columns, axis=1)
+    def _sources(self) -> NDArray[np.int64]:
+        """Give the numbers of axes and of coordinates of the analysis that torques come from."""
+        return np.array(
+            [
+                PELVIS_AXES[row.name] if row.of_net_moment else self._coordinates.index(row.name)
+                for row in self.rows
+            ]
+        )
 
 
 def _names(row: TorqueRow) -> tuple[str, str]:
     """Give the names that a coordinate has in the 3D and in the sagittal skeleton."""
     return row.coordinate, row.coordinate.removesuffix('_r').removesuffix('_l')
-
-
-@dataclass(frozen=True, eq=False)
-class _Surfaces:
-    """Strength surfaces of n_j joints, lower and upper, so that one evaluation serves them all.
-
-    Arrays (2, 1, n_j); the coefficients have their number before that.
-    """
-
-    coefficients: Array
-    magnitude: Array
-    angle_factor: Array
-    speed_factor: Array
-
-    @classmethod
-    def of(cls, bounds: list[list[StrengthBound]]) -> _Surfaces:
-        def gathered(name: str) -> Array:
-            return np.array([[getattr(bound, name) for bound in side] for side in bounds])
-
-        return cls(
-            np.moveaxis(gathered('coefficients'), -1, 0)[:, :, None],
-            *(gathered(name)[:, None] for name in ('magnitude', 'angle_factor', 'speed_factor')),
-        )
-
-    def __call__(self, angle: Array, speed: Array) -> Array:
-        """Give limits (2, n, n_j) [N m] at angles [rad] and speeds [rad/s] of the coordinates."""
-        return np.asarray(
-            self.magnitude
-            * surface(self.coefficients, self.angle_factor * angle, self.speed_factor * speed)
-        )
