@@ -37,6 +37,8 @@ _TAIL = {
     'points': ('p', 3), 'frames': ('f', 4), 'ground_force': (2, 3), 'cop': (2, 3),
     'free_moment': (2, 3), 'hand_force': (2, 3), 'box_position': (3,),
 }
+#: So many values are summed by one thread; more may wait for several, longer than it takes.
+_FEW = 1000
 #: Arrays in which NaN means "none" (unloaded foot, no box).
 _MAY_BE_NAN = ('cop', 'box_position')
 
@@ -302,7 +304,9 @@ def _all_finite(array: Array) -> bool:
     A sum of squares is finite unless a value is not, or beyond 1e154: only then each is looked
     at. Of a live sample this takes a quarter of the time of looking at each.
     """
-    return math.isfinite(np.vdot(array, array)) or bool(np.isfinite(array).all())
+    if array.size <= _FEW and math.isfinite(np.vdot(array, array)):
+        return True
+    return bool(np.isfinite(array).all())
 
 
 def _worst_length(quaternions: Array) -> float:

@@ -2,6 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Largest mean activation over a window, thesis section 4.2.2."""
 
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -82,3 +86,19 @@ def test_bad_input_is_refused():
         activation_index(np.array([0.0, 0.0]), ('m',), np.zeros((2, 1)), np.ones(2, bool))
     with pytest.raises(InvalidInputError, match='activation'):
         activation_index(np.array([0.0, 0.1]), ('m',), np.zeros((2, 2)), np.ones(2, bool))
+
+
+def test_the_first_lift_imports_nothing():
+    """Live samples wait for an import: numpy's median imports masked arrays, for 20 ms."""
+    code = (
+        'import sys, numpy as np\n'
+        'from injury_monitor.core.activation_index import activation_index\n'
+        'before = set(sys.modules)\n'
+        'time = np.arange(100) / 100\n'
+        "activation_index(time, ('a',), np.full((100, 1), 0.5), np.ones(100, bool))\n"
+        'print(sorted(set(sys.modules) - before))\n'
+    )
+    answer = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True,
+                            check=True, timeout=60, env={**os.environ, 'PYTHONPATH':
+                                                         os.pathsep.join(sys.path)})
+    assert answer.stdout.strip() == '[]'

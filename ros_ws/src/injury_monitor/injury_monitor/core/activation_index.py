@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
+from statistics import median
 
 import numpy as np
 
@@ -141,7 +142,8 @@ def activation_index(time: FloatArray, muscles: Sequence[str], activation: Float
     length = float(stamps[-1] - stamps[0]) if len(stamps) > 1 else 0.0
     if length <= 0.0:
         return ActivationIndex(tuple(muscles), best, when, 0.0)
-    mean = SlidingMean(min(window, length), 2.5 * float(np.median(np.diff(time))))
+    # Not numpy's median: its first call imports masked arrays, 20 ms between two live samples.
+    mean = SlidingMean(min(window, length), 2.5 * median(np.diff(time).tolist()))
     for stamp, row in zip(stamps, values[solved], strict=True):
         current = mean.add(float(stamp), row)
         if current is not None:

@@ -15,6 +15,9 @@ from injury_monitor.core.exceptions import InvalidInputError
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
 
+#: So many values are summed by one thread; more may wait for several, longer than it takes.
+_FEW = 1000
+
 
 def finite(field: str, value: float) -> float:
     """Return ``value`` as a float; refuse NaN and infinity."""
@@ -60,4 +63,6 @@ def all_finite(values: FloatArray) -> bool:
     A sum of squares is finite unless a value is not, or beyond 1e154: only then each is looked
     at, which takes four times as long for a live sample.
     """
-    return math.isfinite(np.vdot(values, values)) or bool(np.all(np.isfinite(values)))
+    if values.size <= _FEW and math.isfinite(np.vdot(values, values)):
+        return True
+    return bool(np.all(np.isfinite(values)))
