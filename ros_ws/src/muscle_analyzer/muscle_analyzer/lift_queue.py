@@ -6,21 +6,25 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from human_model.motion import BodyMotion
 from muscle_analyzer.core.analyzer import MuscleAnalyzer
-from muscle_analyzer.core.muscle_analysis import MuscleAnalysis, joined
+from muscle_analyzer.core.muscle_analysis import JoinedParts, MuscleAnalysis
+
+SAMPLES: Final = 2
+"""Samples that are analysed in one step: together they take hardly longer than one."""
 
 
-@dataclass(eq=False)
+@dataclass(frozen=True, eq=False)
 class WaitingLift:
     """
-    A lift that waits for its analysis, or is in the middle of it.
+    A lift that waits for its analysis.
 
     Attributes
     ----------
@@ -30,8 +34,6 @@ class WaitingLift:
         [kg].
     motion : BodyMotion
     tracker_status : (n,) array of int
-    parts : list of MuscleAnalysis
-        What has been analysed, sample by sample.
     """
 
     lift_id: str
@@ -39,7 +41,6 @@ class WaitingLift:
     box_mass: float
     motion: BodyMotion
     tracker_status: NDArray[np.int64]
-    parts: list[MuscleAnalysis] = field(default_factory=list)
 
 
 class LiftQueue:
@@ -51,7 +52,7 @@ class LiftQueue:
     analyzer
         Of the node.
     done
-        Takes a lift and its analysis.
+        Takes a lift and its analysis and hands them over in steps, as their messages are large.
     failed
         Takes a lift and the error that ended its analysis.
     errors
@@ -61,7 +62,7 @@ class LiftQueue:
     def __init__(
         self,
         analyzer: MuscleAnalyzer,
-        done: Callable[[WaitingLift, MuscleAnalysis], None],
+        done: Callable[[WaitingLift, MuscleAnalysis], Iterator[None]],
         failed: Callable[[WaitingLift, Exception], None],
         errors: tuple[type[Exception], ...],
     ) -> None:
@@ -69,7 +70,7 @@ class LiftQueue:
         self._done = done
         self._failed = failed
         self._errors = errors
-        self._lifts: deque[WaitingLift] = deque()
+        self._lifts: deque[tuple[WaitingLift, Iterator[None]]] = deque()
 
     def __len__(self) -> int:
         """Give the number of lifts that are not finished."""
@@ -77,34 +78,20 @@ class LiftQueue:
 
     def add(self, lift: WaitingLift) -> None:
         """Take a lift."""
-        self._lifts.append(lift)
+        self._lifts.append((lift, self._steps(lift)))
 
     def work(self, duration: float) -> None:
-        """
-        Go on for about so long [s], at least by one sample.
-
-        A lift is handed over in a call of its own: its messages are large.
-        """
+        """Go on for about so long [s], at least by one step."""
         end = time.perf_counter() + duration
         while self._lifts:
-            lift = self._lifts[0]
-            k = len(lift.parts)
+            lift, steps = self._lifts[0]
             try:
-                if k == len(lift.motion):
-                    self._lifts.popleft()
-                    self._done(lift, joined(lift.parts))
-                    return
-                status = lift.tracker_status[k : k + 1]
-                lift.parts.append(
-                    self._analyzer.analyze(
-                        lift.motion[k], lift.lift_id, lift.source, status, continued=k > 0
-                    )
-                )
+                next(steps)
+            except StopIteration:
+                self._lifts.popleft()
             except self._errors as error:
-                if self._lifts and self._lifts[0] is lift:
-                    self._lifts.popleft()
+                self._lifts.popleft()
                 self._failed(lift, error)
-                return
             if time.perf_counter() > end:
                 return
 
@@ -112,3 +99,20 @@ class LiftQueue:
         """Work off everything at once."""
         while self._lifts:
             self.work(float('inf'))
+
+    def _steps(self, lift: WaitingLift) -> Iterator[None]:
+        """Analyse a lift and hand it over."""
+        parts = JoinedParts(len(lift.motion))
+        for k in range(0, len(lift.motion), SAMPLES):
+            some = slice(k, k + SAMPLES)
+            parts.add(
+                self._analyzer.analyze(
+                    lift.motion[some],
+                    lift.lift_id,
+                    lift.source,
+                    lift.tracker_status[some],
+                    continued=k > 0,
+                )
+            )
+            yield
+        yield from self._done(lift, parts.whole())

@@ -7,6 +7,7 @@ from __future__ import annotations
 import math
 import time
 from collections import OrderedDict, deque
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
 
@@ -26,7 +27,6 @@ from rclpy.clock import Clock, ClockType
 from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 
 from human_model.errors import HumanModelError
-from human_model.motion import BodyMotion as Motion
 from human_model.subject import Subject
 from lifting_node import qos
 from lifting_node.pipeline_node import PipelineNode
@@ -43,8 +43,9 @@ from muscle_analyzer.lift_queue import LiftQueue, WaitingLift
 WAITING_LIFTS: Final = 100
 """Lifts kept until their person is known and the node is active."""
 
-LIFT_STEP: Final = 0.004
-"""Time [s] that whole lifts are worked on right after a live sample: over before the next one."""
+LIFT_STEP: Final = 0.002
+"""Time [s] that whole lifts are worked on right after a live sample: over before the next one,
+also when that comes early."""
 
 QUIET: Final = 0.02
 """Time [s] without a live sample after which whole lifts are worked on all the time."""
@@ -143,11 +144,16 @@ class MuscleAnalyzerNode(PipelineNode):
         mass = conversions.mass_in_hands(motion, self._box_mass)
         status = conversions.quality_from_msg(message).status
         analysis = self.analyzer.analyze(motion, '', 'live', status)
-        self._publish(analysis, motion, mass)
-        self.counts['live samples'] += len(analysis)
-        self.counts['live samples with good L5-S1 load'] += analysis.good_spine_samples
+        # First what alarms hang on.
+        self._spine.publish(conversions.spine_load_to_msg(analysis, mass, self._disc))
+        torques = self.analyzer.joint_torques(analysis, motion)
+        self._torques.publish(conversions.torques_to_msg(torques))
+        self._muscles.publish(conversions.analysis_to_msg(analysis))
+        self._joints.publish(conversions.joint_reactions_to_msg(analysis))
         for reaction in conversions.reactions_to_msg(analysis, self._disc):
             self._reaction.publish(reaction)
+        self.counts['live samples'] += len(analysis)
+        self.counts['live samples with good L5-S1 load'] += analysis.good_spine_samples
         self._queue.work(LIFT_STEP)
         self._last_live = time.monotonic()
 
@@ -193,21 +199,24 @@ class MuscleAnalyzerNode(PipelineNode):
     def _lift_failed(self, lift: WaitingLift, error: Exception) -> None:
         self.report_error(f'{lift.source}_lift {lift.lift_id}: {error}')
 
-    def _lift_done(self, lift: WaitingLift, analysis: Analysis) -> None:
-        self._publish(analysis, lift.motion, lift.box_mass)
+    def _lift_done(self, lift: WaitingLift, analysis: Analysis) -> Iterator[None]:
+        """Publish the analysis of a whole lift, message by message."""
+        self._spine.publish(conversions.spine_load_to_msg(analysis, lift.box_mass, self._disc))
+        yield
+        torques = self.analyzer.joint_torques(analysis, lift.motion)
+        self._torques.publish(conversions.torques_to_msg(torques))
+        yield
+        muscles = conversions.analysis_to_msg(analysis)
+        yield
+        self._muscles.publish(muscles)
+        yield
+        self._joints.publish(conversions.joint_reactions_to_msg(analysis))
+        yield
         self.get_logger().info(
             f'{lift.lift_id} {lift.source}: peak L5-S1 compression '
             f'{analysis.peak_compression:.0f} N; {analysis.good_spine_samples} of '
             f'{len(analysis)} samples good; {analysis.spine_report.message}'
         )
-
-    def _publish(self, analysis: Analysis, motion: Motion, box_mass: float) -> None:
-        """Publish all of an analysis, first what alarms hang on."""
-        self._spine.publish(conversions.spine_load_to_msg(analysis, box_mass, self._disc))
-        torques = self.analyzer.joint_torques(analysis, motion)
-        self._torques.publish(conversions.torques_to_msg(torques))
-        self._muscles.publish(conversions.analysis_to_msg(analysis))
-        self._joints.publish(conversions.joint_reactions_to_msg(analysis))
 
 
 def main(args: list[str] | None = None) -> None:

@@ -38,6 +38,8 @@ Array = NDArray[np.float64]
 
 #: Where a motion may come from.
 SOURCES = ('live', 'measured', 'predicted')
+#: Motions that come while live ones go on: what they need is built before.
+STREAMS = (('measured', '3d_40dof'), ('predicted', '3d_40dof'), ('predicted', '2d_10dof'))
 _SKELETONS: dict[str, type[Skeleton2D] | type[Skeleton3D]] = {
     '2d_10dof': Skeleton2D,
     '3d_40dof': Skeleton3D,
@@ -109,16 +111,23 @@ class MuscleAnalyzer:
         motion = skeleton.body_motion(0.0, q, np.zeros_like(q), np.zeros_like(q))
         self.joint_torques(self.analyze(motion), motion)
         self._streams = {}
+        for source, name in STREAMS:
+            self._stream(source, name)
 
     def _stream(self, source: str, skeleton: str) -> tuple[MotionTransfer, BlockSolver]:
         """Give the warm-started solvers of one kind of motion."""
         key = (source, skeleton)
         if key not in self._streams:
             assert self._subject is not None
+            own = _SKELETONS[skeleton].of(self._subject)
             self._streams[key] = (
-                MotionTransfer(self._model, _SKELETONS[skeleton].of(self._subject)),
+                MotionTransfer(self._model, own),
                 BlockSolver(self._model, self.options),
             )
+            if skeleton not in self._limits:
+                self._limits[skeleton] = TorqueLimits(
+                    self._subject, skeleton, own.coordinates, self.options.coefficient_set
+                )
         return self._streams[key]
 
     def new_transfer(self, skeleton: str) -> MotionTransfer:
@@ -162,7 +171,7 @@ class MuscleAnalyzer:
             (n,) SolveStatus of the motion tracker per sample; none if the motion was not tracked.
         continued
             Whether this block goes on where the one before of the same source ended: a lift in
-            parts has the same results as in one block (`muscle_analysis.joined`).
+            parts has the same results as in one block (`muscle_analysis.JoinedParts`).
 
         Raises
         ------
@@ -216,10 +225,5 @@ class MuscleAnalyzer:
         if self._subject is None:
             raise NotConfiguredError('joint_torques: no subject yet, call configure first')
         if motion.skeleton not in self._limits:
-            self._limits[motion.skeleton] = TorqueLimits(
-                self._subject,
-                motion.skeleton,
-                motion.coordinates,
-                self.options.coefficient_set,
-            )
+            raise InputArrayError(f'no {motion.skeleton} motion has been analysed')
         return self._limits[motion.skeleton].of(analysis, motion)

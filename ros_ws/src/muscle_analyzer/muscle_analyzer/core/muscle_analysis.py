@@ -4,14 +4,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from human_model.report import SolveReport, SolveStatus
+from muscle_analyzer.core.exceptions import InputArrayError
 from muscle_analyzer.core.verdict import worst
 
 Array = NDArray[np.float64]
@@ -152,22 +153,22 @@ class MuscleAnalysis:
         """Top-down less bottom-up net moment at L5-S1 (n, 3), world frame [N m]."""
         return self.net_moment_top_down - self.net_moment_bottom_up
 
-    @property
+    @cached_property
     def status(self) -> NDArray[np.int64]:
         """Status of each sample (n,)."""
         return np.array([int(report.status) for report in self.reports], np.int64)
 
-    @property
+    @cached_property
     def report(self) -> SolveReport:
         """Report of the worst sample: highest status, then largest residual."""
         return worst(self.reports, self.time.tolist())
 
-    @property
+    @cached_property
     def spine_status(self) -> NDArray[np.int64]:
         """Status of the L5-S1 load of each sample (n,)."""
         return np.array([int(report.status) for report in self.spine_reports], np.int64)
 
-    @property
+    @cached_property
     def spine_report(self) -> SolveReport:
         """Report of the worst L5-S1 load."""
         return worst(self.spine_reports, self.time.tolist())
@@ -184,20 +185,53 @@ class MuscleAnalysis:
         return float(good.max()) if good.size else float('nan')
 
 
-def joined(parts: Sequence[MuscleAnalysis]) -> MuscleAnalysis:
+class JoinedParts:
     """
-    Give one analysis of consecutive parts of a lift.
+    Joins the analyses of consecutive parts of a lift as they come: nothing is left for its end.
 
     Parameters
     ----------
-    parts
-        At least one, of the same lift, person and options.
+    n
+        Number of samples of the lift.
     """
-    values: dict[str, Any] = {}
-    for name in (field.name for field in fields(MuscleAnalysis)):
-        first = getattr(parts[0], name)
-        if isinstance(first, np.ndarray):
-            values[name] = np.concatenate([getattr(part, name) for part in parts])
-        elif name in ('reports', 'spine_reports'):
-            values[name] = tuple(report for part in parts for report in getattr(part, name))
-    return replace(parts[0], **values)
+
+    def __init__(self, n: int) -> None:
+        self._n = n
+        self._arrays: dict[str, NDArray[Any]] = {}
+        self._reports: dict[str, list[SolveReport]] = {'reports': [], 'spine_reports': []}
+        self._first: MuscleAnalysis | None = None
+
+    def __len__(self) -> int:
+        """Give the number of samples that have come."""
+        return len(self._reports['reports'])
+
+    def add(self, part: MuscleAnalysis) -> None:
+        """Take the next part: of the same lift, person and options as the first."""
+        if self._first is None:
+            self._first = part
+            values = {field.name: getattr(part, field.name) for field in fields(part)}
+            self._arrays = {
+                name: np.empty((self._n, *value.shape[1:]), value.dtype)
+                for name, value in values.items()
+                if isinstance(value, np.ndarray)
+            }
+        place = slice(len(self), len(self) + len(part))
+        for name, array in self._arrays.items():
+            array[place] = getattr(part, name)
+        for name, reports in self._reports.items():
+            reports.extend(getattr(part, name))
+
+    def whole(self) -> MuscleAnalysis:
+        """
+        Give the analysis of the whole lift.
+
+        Raises
+        ------
+        InputArrayError
+            If samples are missing.
+        """
+        if self._first is None or len(self) != self._n:
+            raise InputArrayError(f'{len(self)} of {self._n} samples have been analysed')
+        values: dict[str, Any] = {name: tuple(own) for name, own in self._reports.items()}
+        values.update(self._arrays)
+        return replace(self._first, **values)
