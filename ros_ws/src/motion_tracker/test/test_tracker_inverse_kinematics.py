@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from human_model.report import SolveStatus
 from motion_tracker.core.errors import InverseKinematicsError
 from motion_tracker.core.ik_kernel import fit
-from motion_tracker.core.inverse_kinematics import IKSettings, InverseKinematics
+from motion_tracker.core.ik_types import IKSettings
+from motion_tracker.core.inverse_kinematics import InverseKinematics
 from motion_tracker.core.marker_model import MarkerModel, from_anthropometry
 from motion_tracker.core.marker_set import load_marker_set
 

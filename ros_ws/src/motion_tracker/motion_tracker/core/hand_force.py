@@ -22,7 +22,6 @@ import numpy.typing as npt
 
 from motion_tracker.core import hand_force_kernel
 from motion_tracker.core.errors import HandForceError
-from motion_tracker.core.hand_force_kernel import smooth_step
 
 Array = npt.NDArray[np.float64]
 
@@ -170,13 +169,12 @@ class HandForceEstimator:
             return np.zeros(shape)
         count = 1 if hands.ndim == 2 else len(hands)
         less = np.full(count, np.nan) if missing is None else (self.bias or 0.0) - missing
-        released = 0.0 if since_end is None else smooth_step(
-            since_end / self.settings.release_time)
         force: Array = hand_force_kernel.hand_forces(
             self.box_mass, np.asarray(less, dtype=np.float64).reshape(count),
             np.ascontiguousarray(hands).reshape(count, 2, 3),
             np.ascontiguousarray(box).reshape(count, 3),
             np.ascontiguousarray(acceleration).reshape(count, 3),
-            np.nan if support is None else support, released, self._reach, self.settings.fade,
-            self.settings.free_rise, self.settings.largest_share)
+            np.nan if support is None else support, np.nan if since_end is None else since_end,
+            self._reach, self.settings.fade, self.settings.free_rise, self.settings.largest_share,
+            self.settings.release_time)
         return force.reshape(shape)

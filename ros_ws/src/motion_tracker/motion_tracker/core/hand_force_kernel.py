@@ -52,8 +52,8 @@ def gate(hands: Array, box: Array, reach: float, fade: float) -> float:
 
 @numba.njit(cache=True)
 def hand_forces(mass: float, missing: Array, hands: Array, box: Array, acceleration: Array,
-                support: float, released: float, reach: float, fade: float, free_rise: float,
-                largest_share: float) -> Array:
+                support: float, since_end: float, reach: float, fade: float, free_rise: float,
+                largest_share: float, release_time: float) -> Array:
     """Force of the box on the [right, left] hand (n, 2, 3) [N].
 
     Parameters
@@ -66,20 +66,21 @@ def hand_forces(mass: float, missing: Array, hands: Array, box: Array, accelerat
         Grip centres (n, 2, 3) [m], box centre (n, 3) [m] and its acceleration [m/s^2].
     support
         Height the box was lifted from [m]; NaN: nothing is carried.
-    released
-        How far the box is handed back after a lift: 0 not at all, 1 wholly.
-    reach, fade, free_rise, largest_share
+    since_end
+        Time since the end of the last lift was known [s]; NaN while one is under way.
+    reach, fade, free_rise, largest_share, release_time
         As in `hand_force.HandForceSettings`; half the box's diagonal is part of the reach.
     """
     n = hands.shape[0]
     force = np.zeros((n, 2, 3))
+    kept = 1.0 if np.isnan(since_end) else 1.0 - smooth_step(since_end / release_time)
     most = largest_share * mass * STANDARD_GRAVITY
     for k in range(n):
         if not np.all(np.isfinite(box[k])):
             continue
         carried = 0.0
         if not np.isnan(support):
-            carried = smooth_step((box[k, 2] - support) / free_rise) * (1.0 - released)
+            carried = kept * smooth_step((box[k, 2] - support) / free_rise)
         taken = 0.0
         if not np.isnan(missing[k]):
             taken = gate(hands[k], box[k], reach, fade) * min(max(missing[k], 0.0), most)

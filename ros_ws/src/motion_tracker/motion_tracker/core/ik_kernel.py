@@ -96,33 +96,40 @@ def _normal_equations(tree: TreeArrays, origin: Array, axis: Array, position: Ar
 @numba.njit(cache=True)
 def _solve_free(hessian: Array, gradient: Array, free: IntArray, damping: float,
                 step: Array) -> bool:
-    """Cholesky solution of (H + damping I) step = -g over the free coordinates."""
+    """Cholesky solution of (H + damping I) step = -g over the free coordinates.
+
+    Row by row of the upper factor; what is left of the matrix is reduced by each row as soon as it
+    is there, so that the innermost loops run along rows.
+    """
     n = free.shape[0]
-    factor = np.zeros((n, n))
+    factor = np.empty((n, n))
     y = np.empty(n)
     for a in range(n):
-        for b in range(a + 1):
-            i, j = free[a], free[b]
-            value = hessian[i, j] if i >= j else hessian[j, i]
-            if a == b:
-                value += damping
-            for k in range(b):
-                value -= factor[a, k] * factor[b, k]
-            if a == b:
-                if value <= 0.0:
-                    return False
-                factor[a, a] = np.sqrt(value)
-            else:
-                factor[a, b] = value / factor[b, b]
-    for a in range(n):
-        value = -gradient[free[a]]
-        for k in range(a):
-            value -= factor[a, k] * y[k]
-        y[a] = value / factor[a, a]
+        i = free[a]
+        for b in range(a, n):
+            j = free[b]
+            factor[a, b] = hessian[j, i] if j >= i else hessian[i, j]
+        factor[a, a] += damping
+        y[a] = -gradient[i]
+    for k in range(n):
+        row = factor[k]
+        if row[k] <= 0.0:
+            return False
+        pivot = np.sqrt(row[k])
+        row[k] = pivot
+        y[k] /= pivot
+        for b in range(k + 1, n):
+            row[b] /= pivot
+            y[b] -= row[b] * y[k]
+        for a in range(k + 1, n):
+            share = row[a]
+            left = factor[a]
+            for b in range(a, n):
+                left[b] -= share * row[b]
     for a in range(n - 1, -1, -1):
         value = y[a]
         for k in range(a + 1, n):
-            value -= factor[k, a] * y[k]
+            value -= factor[a, k] * y[k]
         y[a] = value / factor[a, a]
     step[:] = 0.0
     for a in range(n):
@@ -194,6 +201,39 @@ def seen_curvature(tree: TreeArrays, q: Array, body: IntArray, local: Array, wei
         for b in range(a):
             hessian[b, a] = hessian[a, b]
     return 1.0 / np.diag(np.linalg.inv(hessian))
+
+
+@numba.njit(cache=True)
+def marked(position: Array, weight: Array) -> tuple[Array, Array]:
+    """Measured positions (n, 3) with zeros, and weights (n,) with zeros, where not seen."""
+    target, trust = np.zeros_like(position), np.zeros_like(weight)
+    for i in range(weight.shape[0]):
+        if np.all(np.isfinite(position[i])):
+            target[i] = position[i]
+            trust[i] = weight[i]
+    return target, trust
+
+
+@numba.njit(cache=True)
+def misfit(position: Array, target: Array, weight: Array) -> tuple[Array, float, float, int]:
+    """Distances (n,) of the markers, their root mean square and maximum [m], and their number.
+
+    Of those of positive weight; the distances of the others are NaN, and all is NaN without any.
+    """
+    distance = np.full(weight.shape[0], np.nan)
+    used, total, largest = 0, 0.0, 0.0
+    for i in range(weight.shape[0]):
+        if weight[i] > 0.0:
+            x, y, z = (position[i, 0] - target[i, 0], position[i, 1] - target[i, 1],
+                       position[i, 2] - target[i, 2])
+            square = x * x + y * y + z * z
+            distance[i] = np.sqrt(square)
+            total += square
+            largest = max(largest, distance[i])
+            used += 1
+    if used == 0:
+        return distance, np.nan, np.nan, 0
+    return distance, np.sqrt(total / used), largest, used
 
 
 @numba.njit(cache=True)

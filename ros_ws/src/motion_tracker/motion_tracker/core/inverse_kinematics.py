@@ -15,7 +15,6 @@ curvature (a marker 0.1 m off the axis counts 0.01 m^2 per unit weight):
 
 import csv
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -25,7 +24,8 @@ from human_model.compiled import point_positions
 from human_model.report import SolveStatus
 from human_model.skeleton import Skeleton
 from motion_tracker.core.errors import InverseKinematicsError
-from motion_tracker.core.ik_kernel import fit, seen_curvature
+from motion_tracker.core.ik_kernel import fit, marked, misfit, seen_curvature
+from motion_tracker.core.ik_types import IKSettings, IKSolution, Sight
 from motion_tracker.core.marker_model import MarkerModel
 from motion_tracker.core.marker_set import DATA, mirror_name
 
@@ -33,89 +33,12 @@ Array = npt.NDArray[np.float64]
 
 _PLACE = ('pelvis_tx', 'pelvis_ty', 'pelvis_tz', 'pelvis_tilt', 'pelvis_list', 'pelvis_rotation')
 
+#: Sets of markers whose sight is remembered.
+_MOST_SIGHTS = 256
+
 #: Postures tried when there is no previous frame: standing, half and deep squat, as multiples.
 _CROUCH = {'hip_flexion': 1.4, 'knee_angle': 1.5, 'ankle_angle': 0.3}
 _STARTS = (0.0, 0.6, 1.2)
-
-
-@dataclass(frozen=True)
-class IKSettings:
-    """Weights and limits of the fit.
-
-    Attributes
-    ----------
-    neutral_weight : float
-        Of the neutral posture [m^2/rad^2].
-    spine_weight, blind_spine_weight : float
-        Of the lumbar rhythm [m^2/rad^2] with and without a marker on the lumbar segment; the
-        first is the ratio of the variances of a trunk marker (5 mm of soft tissue, weight 2) and
-        of the departure from the rhythm (4 deg).
-    held_weight : float
-        Of the previous value of a coordinate that no marker sees in this frame [m^2/rad^2].
-    seen_curvature : float
-        A coordinate counts as seen when the curvature of the fit about it, all others free to
-        follow, exceeds this [m^2/rad^2]: a marker 3 cm off the axis.
-    max_residual, rms_residual : float
-        A frame whose largest or root mean square distance exceeds this is not good data [m].
-    max_iterations : int
-    tolerance : float
-        Largest last step of a converged fit [rad or m].
-    """
-
-    neutral_weight: float = 1e-5
-    spine_weight: float = 1e-2
-    blind_spine_weight: float = 0.3
-    held_weight: float = 1e-2
-    seen_curvature: float = 1e-3
-    max_residual: float = 0.08
-    rms_residual: float = 0.03
-    max_iterations: int = 60
-    tolerance: float = 1e-7
-
-
-@dataclass(frozen=True, eq=False)
-class IKSolution:
-    """Fit of one frame.
-
-    Attributes
-    ----------
-    q : ndarray (n_q,)
-        Joint coordinates [rad or m].
-    residuals : ndarray (n_markers,)
-        Distance of each marker from the model [m]; NaN where not seen or not used.
-    rms, maximum : float
-        Of the residuals [m]; NaN without markers.
-    used : int
-        Markers used.
-    held : tuple of str
-        Coordinates that no marker saw in this frame.
-    rejected : tuple of str
-        Markers left out as swapped or wrongly labelled.
-    status : SolveStatus
-    message : str
-        Names what is wrong; empty when nothing is.
-    iterations : int
-    objective, stationarity : float
-        Final value [m^2] and largest free gradient component.
-    """
-
-    q: Array
-    residuals: Array
-    rms: float
-    maximum: float
-    used: int
-    held: tuple[str, ...]
-    rejected: tuple[str, ...]
-    status: SolveStatus
-    message: str
-    iterations: int
-    objective: float
-    stationarity: float
-
-    @property
-    def ok(self) -> bool:
-        """Whether the frame is good data."""
-        return self.status is SolveStatus.OK
 
 
 @cache
@@ -173,9 +96,10 @@ class InverseKinematics:
         blind = 'lumbar' not in model.segments
         self._pair_weight = np.full(len(prior), self.settings.blind_spine_weight if blind
                                     else self.settings.spine_weight)
-        self._seen_by: dict[bytes, npt.NDArray[np.bool_]] = {}
+        self._weights = np.ascontiguousarray(model.weights, dtype=np.float64)
+        self._sights: dict[bytes, Sight] = {}
         #: Coordinates seen when all markers are seen.
-        self.seen = self._seen(model.weights)
+        self.seen = self._seen(self._weights)
         if not self.seen[place].all():
             lost = [skeleton.coordinates[j] for j in np.flatnonzero(place & ~self.seen)]
             raise InverseKinematicsError(f'the markers {", ".join(model.names)} do not determine '
@@ -187,14 +111,26 @@ class InverseKinematics:
         return tuple(self.skeleton.coordinates[j] for j in np.flatnonzero(~self.seen))
 
     def _seen(self, weight: Array) -> npt.NDArray[np.bool_]:
-        """Coordinates (n_q,) that the markers of positive weight determine, by set of markers."""
-        key = (weight > 0).tobytes()
-        if key not in self._seen_by:
-            curvature = seen_curvature(
-                self.skeleton.tree, self.skeleton.standing(), self._body, self._local, weight,
-                self._pair, self._share, self._pair_weight, self.settings.neutral_weight)
-            self._seen_by[key] = np.asarray(curvature > self.settings.seen_curvature)
-        return self._seen_by[key]
+        """Coordinates (n_q,) that the markers of positive weight determine."""
+        curvature = seen_curvature(
+            self.skeleton.tree, self.skeleton.standing(), self._body, self._local, weight,
+            self._pair, self._share, self._pair_weight, self.settings.neutral_weight)
+        return np.asarray(curvature > self.settings.seen_curvature)
+
+    def _sight(self, weight: Array) -> Sight:
+        """Return what the markers of positive weight determine, remembered by set of markers."""
+        key = weight.tobytes()
+        sight = self._sights.get(key)
+        if sight is None:
+            held = self.seen & ~self._seen(weight)
+            names = tuple(self.skeleton.coordinates[j] for j in np.flatnonzero(held))
+            lost = bool(held[self._place].any() or not weight.any())
+            sight = Sight(held, names, lost,
+                          np.where(held, self.settings.held_weight, self._neutral))
+            if len(self._sights) >= _MOST_SIGHTS:
+                self._sights.clear()
+            self._sights[key] = sight
+        return sight
 
     def predict(self, q: npt.ArrayLike) -> Array:
         """Marker positions (n_markers, 3) [m] at coordinates q."""
@@ -218,54 +154,55 @@ class InverseKinematics:
         InverseKinematicsError
             If the shape is wrong.
         """
-        target = np.array(positions, dtype=np.float64)
-        if target.shape != (len(self.model.names), 3):
+        measured = np.ascontiguousarray(positions, dtype=np.float64)
+        if measured.shape != (len(self.model.names), 3):
             raise InverseKinematicsError(f'positions: shape ({len(self.model.names)}, 3) is '
-                                         f'needed, got {target.shape}')
-        missing = ~np.all(np.isfinite(target), axis=1)
-        weight = np.where(missing, 0.0, self.model.weights)
-        target[missing] = 0.0
+                                         f'needed, got {measured.shape}')
+        target, weight = marked(measured, self._weights)
         last = None if previous is None else np.ascontiguousarray(previous, dtype=np.float64)
-        held = self.seen & ~self._seen(weight)
-        if held[self._place].any() or not weight.any():
-            return self._lost(target, weight, last, held)
+        sight = self._sight(weight)
+        if sight.lost:
+            return self._lost(weight, last, sight)
         q, position, iterations, converged, value, stationarity = self._best(
-            target, weight, last, held)
-        distance = np.linalg.norm(position - target, axis=1)
+            target, weight, last, sight)
+        residuals, rms, maximum, used = misfit(position, target, weight)
         rejected: tuple[str, ...] = ()
         swapped = ''
-        if self._too_far(distance, weight) or self._crossed_pairs(position, target, weight):
-            crossed = self._sides_exchanged(target, weight, distance)
+        if self._too_far(rms, maximum) or (maximum > self.settings.rms_residual
+                                           and self._crossed_pairs(position, target, weight)):
+            crossed = self._sides_exchanged(target, weight, residuals)
             if crossed is not None:
                 q, position, target = crossed
                 swapped = 'of the left and right side are all exchanged'
             else:
                 q, position, weight, rejected, swapped = self._robust(q, target, weight, last,
-                                                                      held)
-            distance = np.linalg.norm(position - target, axis=1)
-        residuals = np.where(weight > 0, distance, np.nan)
-        rms = float(np.sqrt(np.nanmean(residuals**2))) if (weight > 0).any() else np.nan
-        maximum = float(np.nanmax(residuals)) if (weight > 0).any() else np.nan
-        status, message = self._judge(converged, rms, maximum, residuals, held, swapped, rejected)
-        names = tuple(self.skeleton.coordinates[j] for j in np.flatnonzero(held))
-        return IKSolution(q, residuals, rms, maximum, int((weight > 0).sum()), names, rejected,
-                          status, message, int(iterations), float(value), float(stationarity))
+                                                                      sight)
+            residuals, rms, maximum, used = misfit(position, target, weight)
+        status, message = self._judge(converged, rms, maximum, residuals, used, sight, swapped,
+                                      rejected)
+        return IKSolution(q, residuals, rms, maximum, used, sight.names, rejected,
+                          status, message, iterations, value, stationarity)
 
     def _fit(self, start: Array, target: Array, weight: Array, last: Array | None,
-             held: npt.NDArray[np.bool_]) -> tuple[Array, Array, int, bool, float, float]:
-        prior_weight = np.where(held, self.settings.held_weight, self._neutral)
-        prior = np.where(held, last, 0.0) if last is not None else np.zeros_like(start)
+             sight: Sight | None) -> tuple[Array, Array, int, bool, float, float]:
+        """Fit from one start; without a sight all coordinates are taken as seen."""
+        prior = np.zeros_like(start)
+        prior_weight = self._neutral
+        if sight is not None:
+            prior_weight = sight.prior_weight
+            if sight.names and last is not None:
+                prior = np.where(sight.held, last, 0.0)
         result: tuple[Array, Array, int, bool, float, float] = fit(
             self.skeleton.tree, start, self._lower, self._upper, self._body, self._local, target,
             weight, prior, prior_weight, self._pair, self._share, self._pair_weight,
             self.settings.max_iterations, self.settings.tolerance)
         return result
 
-    def _best(self, target: Array, weight: Array, last: Array | None,
-              held: npt.NDArray[np.bool_]) -> tuple[Array, Array, int, bool, float, float]:
+    def _best(self, target: Array, weight: Array, last: Array | None, sight: Sight | None,
+              ) -> tuple[Array, Array, int, bool, float, float]:
         if last is not None:
-            return self._fit(last, target, weight, last, held)
-        fits = [self._fit(start, target, weight, None, held)
+            return self._fit(last, target, weight, last, sight)
+        fits = [self._fit(start, target, weight, None, sight)
                 for start in self._starts(target, weight)]
         return min(fits, key=lambda result: result[4])
 
@@ -284,10 +221,8 @@ class InverseKinematics:
             starts.append(q)
         return starts
 
-    def _too_far(self, distance: Array, weight: Array) -> bool:
-        seen = distance[weight > 0]
-        return bool(seen.max() > self.settings.max_residual
-                    or np.sqrt(np.mean(seen**2)) > self.settings.rms_residual)
+    def _too_far(self, rms: float, maximum: float) -> bool:
+        return maximum > self.settings.max_residual or rms > self.settings.rms_residual
 
     def _sides_exchanged(self, target: Array, weight: Array, distance: Array,
                          ) -> tuple[Array, Array, Array] | None:
@@ -298,16 +233,14 @@ class InverseKinematics:
         if np.median(distance[weight > 0]) < self.settings.rms_residual:
             return None
         crossed, seen = target[self._mirror], weight[self._mirror]
-        nothing = np.zeros(len(self._lower), dtype=np.bool_)
-        q, position, *_ = self._best(crossed, seen, None, nothing)
-        after = np.linalg.norm(position - crossed, axis=1)
-        if self._too_far(after, seen):
+        q, position, *_ = self._best(crossed, seen, None, None)
+        _, rms, maximum, _ = misfit(position, crossed, seen)
+        if self._too_far(rms, maximum):
             return None
         return q, position, np.where((seen > 0)[:, None], crossed, position)
 
     def _robust(self, q: Array, target: Array, weight: Array, last: Array | None,
-                held: npt.NDArray[np.bool_],
-                ) -> tuple[Array, Array, Array, tuple[str, ...], str]:
+                sight: Sight) -> tuple[Array, Array, Array, tuple[str, ...], str]:
         """Refit without the markers that do not fit; say which of them look exchanged."""
         scale = self.settings.rms_residual
         start = q if last is None else last
@@ -317,7 +250,7 @@ class InverseKinematics:
             distance = np.linalg.norm(position - target, axis=1)
             # Geman and McClure 1987: weight of a redescending estimator.
             trust = weight / (1.0 + (distance / scale) ** 2) ** 2
-            start, position, *_ = self._fit(start, target, trust, last, held)
+            start, position, *_ = self._fit(start, target, trust, last, sight)
         distance = np.linalg.norm(position - target, axis=1)
         bad = (weight > 0) & (distance > self.settings.max_residual)
         names = self.model.names
@@ -327,7 +260,7 @@ class InverseKinematics:
             found.append(f'{names[a]} and {names[b]} look exchanged (residual {straight:.3f} m, '
                          f'{crossed:.3f} m when exchanged)')
         good = np.where(bad, 0.0, weight)
-        start, position, *_ = self._fit(start, target, good, last, held)
+        start, position, *_ = self._fit(start, target, good, last, sight)
         return (start, position, good, tuple(names[i] for i in np.flatnonzero(bad)),
                 '; '.join(found))
 
@@ -349,9 +282,8 @@ class InverseKinematics:
                     pairs.append((int(a), int(b), straight, crossed))
         return pairs
 
-    def _judge(self, converged: bool, rms: float, maximum: float, residuals: Array,
-               held: npt.NDArray[np.bool_], swapped: str, rejected: tuple[str, ...],
-               ) -> tuple[SolveStatus, str]:
+    def _judge(self, converged: bool, rms: float, maximum: float, residuals: Array, used: int,
+               sight: Sight, swapped: str, rejected: tuple[str, ...]) -> tuple[SolveStatus, str]:
         if swapped:
             return SolveStatus.TRACKER_MARKERS_SWAPPED, f'markers {swapped}'
         if not converged:
@@ -360,23 +292,23 @@ class InverseKinematics:
             worst = self.model.names[int(np.nanargmax(residuals))]
             return (SolveStatus.TRACKER_BAD_INPUT,
                     f'marker residuals rms {rms:.3f} m, largest {maximum:.3f} m at {worst}')
-        seen = {s for s, r in zip(self.model.segments, residuals, strict=True) if np.isfinite(r)}
-        blind = sorted(set(self.model.segments) - seen)
-        words = [f'no marker seen on {", ".join(blind)}'] if blind else []
-        if held.any():
-            names = [self.skeleton.coordinates[j] for j in np.flatnonzero(held)]
-            words.append(f'{", ".join(names)} not seen: held at the previous value')
+        words = []
+        if used < len(residuals):
+            seen = {s for s, r in zip(self.model.segments, residuals, strict=True)
+                    if np.isfinite(r)}
+            blind = sorted(set(self.model.segments) - seen)
+            words += [f'no marker seen on {", ".join(blind)}'] if blind else []
+        if sight.names:
+            words.append(f'{", ".join(sight.names)} not seen: held at the previous value')
         if words:
             return SolveStatus.TRACKER_MARKERS_MISSING, '; '.join(words)
         return SolveStatus.OK, f'left out: {", ".join(rejected)}' if rejected else ''
 
-    def _lost(self, target: Array, weight: Array, last: Array | None,
-              held: npt.NDArray[np.bool_]) -> IKSolution:
+    def _lost(self, weight: Array, last: Array | None, sight: Sight) -> IKSolution:
         """Answer for a frame whose markers do not even place the pelvis."""
         q = self.skeleton.standing() if last is None else last.copy()
-        names = tuple(self.skeleton.coordinates[j] for j in np.flatnonzero(held))
+        used = int((weight > 0).sum())
         return IKSolution(
-            q, np.full(len(weight), np.nan), np.nan, np.nan, int((weight > 0).sum()), names, (),
+            q, np.full(len(weight), np.nan), np.nan, np.nan, used, sight.names, (),
             SolveStatus.TRACKER_MARKERS_MISSING,
-            f'{int((weight > 0).sum())} of {len(weight)} markers: the pelvis is not determined',
-            0, np.nan, np.nan)
+            f'{used} of {len(weight)} markers: the pelvis is not determined', 0, np.nan, np.nan)

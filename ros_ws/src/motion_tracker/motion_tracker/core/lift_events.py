@@ -13,7 +13,7 @@ zero of the smoothed velocity. Smoothing looks a fixed time ahead, so the events
 and offline; live they are only reported later, and say how much.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -21,6 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from motion_tracker.core.errors import LiftEventError
+from motion_tracker.core.onset_kernel import onset
 
 Array = npt.NDArray[np.float64]
 
@@ -329,26 +330,12 @@ def _change_point(time: Array, height: Array) -> tuple[float, float]:
     first twentieth of a minimum-jerk motion. A start with a step of acceleration, ``x^2``, is
     taken only when it fits clearly better.
     """
-    smooth = _onset(time, height, lambda x: x**3 - x**4 / (4.0 * x[-1]))
-    step = _onset(time, height, lambda x: x**2)
+    instants = np.arange(time[0], time[-2], _STEP)
+    time, height = np.ascontiguousarray(time), np.ascontiguousarray(height)
+    smooth = onset(time, height, instants, True)
+    step = onset(time, height, instants, False)
     _, instant, level = step if step[0] < STEP_EVIDENCE * smooth[0] else smooth
     return instant, level
-
-
-def _onset(time: Array, height: Array, shape: Callable[[Array], Array],
-           ) -> tuple[float, float, float]:
-    """Sum of squares [m^2], instant [s] and level [m] of the best onset of one shape."""
-    best = (np.inf, float(time[0]), float(height[0]))
-    about = height - height.mean()
-    for instant in np.arange(time[0], time[-2], _STEP):
-        rise = shape(np.maximum(0.0, time - instant))
-        centred = rise - rise.mean()
-        slope = float(centred @ about) / float(centred @ centred)
-        misfit = about - slope * centred
-        error = float(misfit @ misfit)
-        if slope > 0.0 and error < best[0]:
-            best = (error, float(instant), float(height.mean() - slope * rise.mean()))
-    return best
 
 
 def detect_lifts(time: npt.ArrayLike, height: npt.ArrayLike, body: npt.ArrayLike | None = None,

@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 
 from motion_tracker.core.hand_force import HandForceEstimator
-from motion_tracker.core.inverse_kinematics import IKSolution
+from motion_tracker.core.ik_types import IKSolution
 from motion_tracker.core.lift_events import LiftEvent, LiftPhase
 from motion_tracker.core.live_status import LiveStatus
 from motion_tracker.core.measured_lift import LiftBuilder

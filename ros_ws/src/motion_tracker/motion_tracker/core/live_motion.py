@@ -18,7 +18,7 @@ from motion_tracker.core.dynamics import needed_force
 from motion_tracker.core.filters import CausalFilter
 from motion_tracker.core.force_plates import SIDES, PlateGeometry, ground_reaction
 from motion_tracker.core.hand_force import HandForceEstimator
-from motion_tracker.core.inverse_kinematics import IKSolution
+from motion_tracker.core.ik_types import IKSolution
 from motion_tracker.core.live_status import LiveStatus
 from motion_tracker.core.streams import SampledStream
 from motion_tracker.core.tracked import Notice, TrackedFrame, TrackerSettings

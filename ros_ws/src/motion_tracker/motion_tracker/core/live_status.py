@@ -5,7 +5,7 @@
 import numpy as np
 
 from human_model.report import SolveStatus
-from motion_tracker.core.inverse_kinematics import IKSolution
+from motion_tracker.core.ik_types import IKSolution
 from motion_tracker.core.mass_watch import MassCheck, MassWatch
 
 

@@ -5,12 +5,14 @@
 from collections import Counter
 from collections.abc import Iterable, Sequence
 
+import numba
 import numpy as np
 import numpy.typing as npt
 
 from motion_tracker.core.errors import TrackerError
 
 Array = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.intp]
 
 #: A coordinate beyond this is no position in metres in a laboratory [m].
 LARGEST_POSITION = 50.0
@@ -48,12 +50,11 @@ class MarkerFrames:
         TrackerError
             If names and positions do not belong together, or the positions are not in metres.
         """
-        array = np.asarray(positions, dtype=np.float64).reshape(-1, 3)
+        array = np.ascontiguousarray(positions, dtype=np.float64).reshape(-1, 3)
         if len(array) != len(names):
             raise TrackerError(f'markers at {stamp:.3f} s: {len(names)} names, '
                                f'{len(array)} positions')
-        size = np.abs(array)
-        largest = float(size[size < np.inf].max(initial=0.0))
+        largest = _largest(array)
         if largest > LARGEST_POSITION:
             raise TrackerError(f'markers at {stamp:.3f} s: a coordinate is {largest:.0f} m; are '
                                'the markers in millimetres?')
@@ -62,9 +63,7 @@ class MarkerFrames:
             unknown = self._plan(tuple(names))
         if self._twice:
             self._counts['markers: name twice in a frame'] += self._twice
-        target = np.full((len(self._row), 3), np.nan)
-        target[self._rows] = array[self._places]
-        return target, unknown
+        return _scattered(array, self._rows, self._places, len(self._row)), unknown
 
     def _plan(self, names: tuple[str, ...]) -> list[str]:
         """Find out which position goes where; return names not seen before."""
@@ -78,3 +77,24 @@ class MarkerFrames:
                    if name not in self._row and name not in self._noticed]
         self._noticed.update(unknown)
         return unknown
+
+
+@numba.njit(cache=True)
+def _largest(positions: Array) -> float:
+    """Largest finite size of a coordinate."""
+    largest = 0.0
+    for i in range(positions.shape[0]):
+        for axis in range(3):
+            size = abs(positions[i, axis])
+            if size > largest and size < np.inf:
+                largest = size
+    return largest
+
+
+@numba.njit(cache=True)
+def _scattered(positions: Array, rows: IntArray, places: IntArray, n: int) -> Array:
+    """Positions (n, 3) whose ``rows`` are those at ``places``, the others NaN."""
+    target = np.full((n, 3), np.nan)
+    for i in range(rows.shape[0]):
+        target[rows[i]] = positions[places[i]]
+    return target

@@ -2,13 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Weight on the plates against the person's mass, watched whenever the person stands still."""
 
-from collections import deque
 from dataclasses import dataclass
 
+import numba
 import numpy as np
+import numpy.typing as npt
 
 from motion_tracker.core.errors import ForcePlateError
 from motion_tracker.core.force_plates import STANDARD_GRAVITY
+
+Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -83,7 +86,9 @@ class MassWatch:
         self._mass = subject_mass
         self._tolerance = tolerance
         self._box_mass: float | None = None
-        self._recent: deque[tuple[float, float]] = deque()
+        # Force and need of the latest samples, in a ring; how many of them are one stretch.
+        self._recent = np.empty((0, 2))
+        self._count = 0
 
     @property
     def agrees(self) -> bool:
@@ -105,23 +110,38 @@ class MassWatch:
         rate
             Samples per second [Hz].
         """
+        window = max(2, round(self.WINDOW * rate))
+        if len(self._recent) != window:
+            self._recent, self._count = np.empty((window, 2)), 0
         if box_mass is None or box_mass != self._box_mass:
-            self._recent.clear()
+            self._count = 0
             self._box_mass = box_mass
         if box_mass is None:
             return None
-        self._recent.append((vertical, need))
-        if len(self._recent) < max(2, round(self.WINDOW * rate)):
+        self._recent[self._count % window] = vertical, need
+        self._count += 1
+        if self._count < window:
             return None
-        forces, needs = np.array(self._recent).T
-        self._recent.popleft()
+        force, deviation, needed = _steadiness(self._recent)
         weight = self._mass * STANDARD_GRAVITY
-        if forces.mean() <= 0 or forces.std() > self.QUIET * forces.mean() \
-                or abs(needs.mean() - weight) > self.QUIET * weight:
+        if force <= 0 or deviation > self.QUIET * force \
+                or abs(needed - weight) > self.QUIET * weight:
             return None
         # The next stretch shares no sample with this one.
-        self._recent.clear()
+        self._count = 0
         before = self.check
-        self.check = MassCheck(float(forces.mean()) / STANDARD_GRAVITY, self._mass, box_mass,
-                               self._tolerance)
+        self.check = MassCheck(force / STANDARD_GRAVITY, self._mass, box_mass, self._tolerance)
         return self.check if before is None or before.ok is not self.check.ok else None
+
+
+@numba.njit(cache=True)
+def _steadiness(rows: Array) -> tuple[float, float, float]:
+    """Mean and standard deviation of the first column (n, 2), and mean of the second."""
+    force, need, square = 0.0, 0.0, 0.0
+    for k in range(rows.shape[0]):
+        force += rows[k, 0]
+        need += rows[k, 1]
+    force /= rows.shape[0]
+    for k in range(rows.shape[0]):
+        square += (rows[k, 0] - force) ** 2
+    return force, np.sqrt(square / rows.shape[0]), need / rows.shape[0]

@@ -13,7 +13,7 @@ from motion_tracker.core.errors import TrackerError
 from motion_tracker.core.filters import MOTION_CUTOFF, PLATE_CUTOFF
 from motion_tracker.core.force_plates import total_cop
 from motion_tracker.core.hand_force import HandForceSettings
-from motion_tracker.core.inverse_kinematics import IKSettings, IKSolution
+from motion_tracker.core.ik_types import IKSettings, IKSolution
 from motion_tracker.core.lift_events import LiftEvent, LiftEventSettings
 
 Array = npt.NDArray[np.float64]

@@ -22,8 +22,9 @@ from motion_tracker.core.errors import TrackerError
 from motion_tracker.core.filters import settling_time
 from motion_tracker.core.force_plates import SIDES, PlateGeometry
 from motion_tracker.core.hand_force import HandForceEstimator
+from motion_tracker.core.ik_types import IKSolution
 from motion_tracker.core.initial_rest import initial_speed
-from motion_tracker.core.inverse_kinematics import IKSolution, InverseKinematics
+from motion_tracker.core.inverse_kinematics import InverseKinematics
 from motion_tracker.core.lift_events import LiftEventDetector
 from motion_tracker.core.lift_records import LiftRecords
 from motion_tracker.core.live_motion import HANDS, LiveMotion
