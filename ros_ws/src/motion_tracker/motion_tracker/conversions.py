@@ -29,6 +29,7 @@ _CDR_HEAD = 4
 _LITTLE_ENDIAN = 1
 _STAMP = struct.Struct('<iII')
 _DOUBLE = 8
+_WRENCH = struct.Struct('<6d')
 
 
 def markers_from_msg(message: Markers) -> tuple[float, list[str], Array]:
@@ -46,8 +47,8 @@ def wrench_from_msg(message: WrenchStamped) -> tuple[float, Array, Array]:
             np.array([moment.x, moment.y, moment.z]))
 
 
-def wrench_from_cdr(data: bytes) -> tuple[float, Array, Array]:
-    """Return the same of a serialised message, without building the message.
+def wrench_from_cdr(data: bytes) -> tuple[float, tuple[float, ...], tuple[float, ...]]:
+    """Return the same of a serialised message as plain numbers, without building the message.
 
     Two plates send thousands of samples a second; the message objects would cost more than the
     whole tracker.
@@ -62,9 +63,9 @@ def wrench_from_cdr(data: bytes) -> tuple[float, Array, Array]:
     seconds, nanoseconds, length = _STAMP.unpack_from(data, _CDR_HEAD)
     begin = _STAMP.size + length
     begin += _CDR_HEAD + (-begin) % _DOUBLE
-    if len(data) < begin + 6 * _DOUBLE:
+    if len(data) < begin + _WRENCH.size:
         raise TrackerError(f'wrench: cut off after {len(data)} bytes')
-    values = np.frombuffer(data, '<f8', 6, begin)
+    values = _WRENCH.unpack_from(data, begin)
     return seconds + nanoseconds / 1e9, values[:3], values[3:]
 
 

@@ -34,6 +34,7 @@ from motion_tracker.core.tracked import DetectedEvent, Notice, Output, TrackedFr
 from motion_tracker.core.tracked import MeasuredLift as TrackedLift
 from motion_tracker.core.tracker import MotionTracker
 from motion_tracker.core.warm_up import warm_up
+from motion_tracker.live_writer import LiveWriter
 from motion_tracker.marker_cdr import MarkerReader
 
 #: Samples kept until person and task are known: 20 s of two 2500 Hz plates.
@@ -64,6 +65,7 @@ class MotionTrackerNode(PipelineNode):
         self._tracker: MotionTracker | None = None
         self._early: deque[Feed] = deque(maxlen=EARLY_SAMPLES)
         self._splitter: RecordingSplitter[Feed] = RecordingSplitter()
+        self._writer = LiveWriter()
         self._recording = 0
         self._lifts = 0
         self._frames = 0
@@ -207,13 +209,13 @@ class MotionTrackerNode(PipelineNode):
     def _publish_one(self, output: Any) -> None:
         if isinstance(output, TrackedFrame):
             # First what the next node of the chain waits for.
-            self._motion.publish(conversions.body_motion_to_msg(output))
-            self._joints.publish(conversions.joint_state_to_msg(output))
-            reaction = conversions.ground_reaction_to_msg(output)
+            self._motion.publish(self._writer.body_motion(output))
+            self._joints.publish(self._writer.joint_state(output))
+            reaction = self._writer.ground_reaction(output)
             if reaction is not None:
                 self._reaction.publish(reaction)
             for side, publisher in ((None, self._total_cop), *enumerate(self._cop)):
-                point = conversions.cop_to_msg(output, side)
+                point = self._writer.cop(output, side)
                 if point is not None:
                     publisher.publish(point)
             if output.message and not output.solution.ok:

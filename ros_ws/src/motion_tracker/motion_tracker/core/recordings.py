@@ -65,7 +65,9 @@ class RecordingSplitter(Generic[T]):
         sample
             Anything.
         """
-        state = self._streams.setdefault(stream, _Stream(recording=self.current))
+        state = self._streams.get(stream)
+        if state is None:
+            state = self._streams[stream] = _Stream(recording=self.current)
         if stamp < state.newest - self.restart:
             state.recording += 1
             state.newest = stamp
