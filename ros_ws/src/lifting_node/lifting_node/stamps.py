@@ -16,5 +16,11 @@ def to_seconds(stamp: Time) -> float:
 
 def to_stamp(seconds: float) -> Time:
     """Return seconds [s] as a stamp, to the microsecond: a double holds no more of an epoch."""
+    sec, nanosec = split(seconds)
+    return Time(sec=sec, nanosec=nanosec)
+
+
+def split(seconds: float) -> tuple[int, int]:
+    """Return whole seconds and nanoseconds of a stamp as `to_stamp` makes it."""
     microseconds = round(seconds * 1_000_000)
-    return Time(sec=microseconds // 1_000_000, nanosec=microseconds % 1_000_000 * 1000)
+    return microseconds // 1_000_000, microseconds % 1_000_000 * 1000

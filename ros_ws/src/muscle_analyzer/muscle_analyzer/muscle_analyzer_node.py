@@ -9,7 +9,7 @@ import time
 from collections import OrderedDict, deque
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from geometry_msgs.msg import WrenchStamped
 from lifting_interfaces.msg import (
@@ -29,6 +29,8 @@ from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 from human_model.errors import HumanModelError
 from human_model.subject import Subject
 from lifting_node import qos
+from lifting_node.cdr import CdrError
+from lifting_node.message_view import viewed
 from lifting_node.pipeline_node import PipelineNode
 from lifting_node.run import run_node
 from muscle_analyzer import conversions
@@ -55,7 +57,7 @@ class MuscleAnalyzerNode(PipelineNode):
     """Analyses live motion and whole lifts of one station; the namespace is the station."""
 
     PACKAGE = 'muscle_analyzer'
-    INPUT_ERRORS = (MuscleAnalyzerError, HumanModelError)
+    INPUT_ERRORS = (MuscleAnalyzerError, HumanModelError, CdrError)
 
     def build(self) -> None:
         """Read the model, load compiled functions; create publishers and subscriptions."""
@@ -94,7 +96,9 @@ class MuscleAnalyzerNode(PipelineNode):
         self._reaction = self.advertise(WrenchStamped, 'l5_s1/reaction', qos.FRAMES)
         self.subscribe(SubjectMsg, 'subject', self._on_subject, qos.LATCHED)
         self.subscribe(Task, 'task', self._on_task, qos.LATCHED)
-        self.subscribe(BodyMotion, 'body_motion', self._on_body_motion, qos.FRAMES)
+        # Live samples are read from their bytes and written as bytes.
+        live = viewed(BodyMotion, self._on_body_motion)
+        self.subscribe(BodyMotion, 'body_motion', live, qos.FRAMES, raw=True)
         self.subscribe(MeasuredLift, 'measured_lift', self._on_measured_lift, qos.RESULTS)
         self.subscribe(PredictedLift, 'predicted_lift', self._on_predicted_lift, qos.RESULTS)
 
@@ -142,16 +146,18 @@ class MuscleAnalyzerNode(PipelineNode):
             return
         motion = conversions.motion_from_msg(message)
         mass = conversions.mass_in_hands(motion, self._box_mass)
-        status = conversions.quality_from_msg(message).status
-        analysis = self.analyzer.analyze(motion, '', 'live', status)
+        analysis = self.analyzer.analyze(motion, '', 'live', message.status)
         # First what alarms hang on.
-        self._spine.publish(conversions.spine_load_to_msg(analysis, mass, self._disc))
+        spine = conversions.spine_load_fields(analysis, mass, self._disc)
+        self._spine.publish(_bytes(SpineLoad, spine))
         torques = self.analyzer.joint_torques(analysis, motion)
-        self._torques.publish(conversions.torques_to_msg(torques))
-        self._muscles.publish(conversions.analysis_to_msg(analysis))
-        self._joints.publish(conversions.joint_reactions_to_msg(analysis))
-        for reaction in conversions.reactions_to_msg(analysis, self._disc):
-            self._reaction.publish(reaction)
+        self._torques.publish(_bytes(JointTorques, conversions.torques_fields(torques)))
+        self._muscles.publish(_bytes(MuscleAnalysis, conversions.analysis_fields(analysis)))
+        self._joints.publish(
+            _bytes(JointReactions, conversions.joint_reactions_fields(analysis))
+        )
+        for reaction in conversions.reactions_fields(analysis, self._disc):
+            self._reaction.publish(_bytes(WrenchStamped, reaction))
         self.counts['live samples'] += len(analysis)
         self.counts['live samples with good L5-S1 load'] += analysis.good_spine_samples
         self._queue.work(LIFT_STEP)
@@ -217,6 +223,11 @@ class MuscleAnalyzerNode(PipelineNode):
             f'{analysis.peak_compression:.0f} N; {analysis.good_spine_samples} of '
             f'{len(analysis)} samples good; {analysis.spine_report.message}'
         )
+
+
+def _bytes(kind: type, fields: dict[str, Any]) -> bytes:
+    """Give a message as it is sent."""
+    return conversions.WRITERS[kind].write(fields)
 
 
 def main(args: list[str] | None = None) -> None:

@@ -1,0 +1,158 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Messages from the values of their fields: as objects, or serialised at once.
+
+A live muscle analysis as a message object is some 360 Python strings and a check of every field,
+for the middleware to turn into bytes. Written at once, names become bytes when they are first
+seen, and arrays are copied as they lie.
+"""
+
+from __future__ import annotations
+
+import importlib
+import struct
+from array import array
+from collections.abc import Callable, Mapping
+from typing import Any, Final
+
+import numpy as np
+from rosidl_parser.definition import (
+    BasicType,
+    NamespacedType,
+    UnboundedSequence,
+    UnboundedString,
+)
+
+#: Adds a value to the bytes behind the head.
+Put = Callable[[bytearray, Any], None]
+#: Gives a value in the form that a message object has it in.
+Make = Callable[[Any], Any]
+
+_HEAD: Final = b'\0\1\0\0'
+_NUMBERS: Final = {'double': 'd', 'uint8': 'B', 'uint16': 'H', 'uint32': 'I', 'int32': 'i'}
+_COUNT: Final = struct.Struct('<I')
+#: Bytes that fill up to the next place of two, four or eight.
+_FILL: Final = tuple(bytes(size) for size in range(8))
+
+
+class MessageWriter:
+    """Makes messages of one type.
+
+    Values are numbers, texts, sequences of numbers as arrays of any shape (row-major), sequences
+    of texts as tuples, and mappings for messages within the message.
+
+    Parameters
+    ----------
+    message_type : type
+        Of numbers, texts, sequences of them and messages of these.
+
+    Raises
+    ------
+    TypeError
+        If the type has a field of another kind.
+    """
+
+    def __init__(self, message_type: Any) -> None:
+        self._type = message_type
+        names = message_type.get_fields_and_field_types()
+        forms = [
+            (name, *_form(f'{message_type.__name__}.{name}', kind))
+            for name, kind in zip(names, message_type.SLOT_TYPES, strict=True)
+        ]
+        self._puts = [(name, put) for name, put, _ in forms]
+        self._makes = [(name, make) for name, _, make in forms]
+
+    def write(self, values: Mapping[str, Any]) -> bytes:
+        """Return the serialised message (common data representation, little-endian).
+
+        Raises
+        ------
+        KeyError
+            If the value of a field is missing.
+        """
+        out = bytearray()
+        self.put(out, values)
+        return _HEAD + out
+
+    def put(self, out: bytearray, values: Mapping[str, Any]) -> None:
+        """Add the message to the bytes of one that it is a part of; raises as `write`."""
+        for name, put in self._puts:
+            put(out, values[name])
+
+    def make(self, values: Mapping[str, Any]) -> Any:
+        """Return the message as an object; raises as `write`."""
+        return self._type(**{name: make(values[name]) for name, make in self._makes})
+
+
+def _form(field: str, kind: Any) -> tuple[Put, Make]:
+    """Return what writes a field of this kind, and what makes its value in a message object."""
+    if isinstance(kind, BasicType) and kind.typename in _NUMBERS:
+        number = float if kind.typename == 'double' else int
+        return _number(struct.Struct('<' + _NUMBERS[kind.typename])), number
+    if isinstance(kind, UnboundedString):
+        return _put_text, str
+    if isinstance(kind, NamespacedType):
+        module = importlib.import_module('.'.join(kind.namespaces))
+        part = MessageWriter(getattr(module, kind.name))
+        return part.put, part.make
+    if isinstance(kind, UnboundedSequence):
+        content = kind.value_type
+        if isinstance(content, UnboundedString):
+            return _Names(), list
+        if isinstance(content, BasicType) and content.typename in _NUMBERS:
+            return _numbers(_NUMBERS[content.typename])
+    raise TypeError(f'{field}: a {kind} cannot be written')
+
+
+def _number(kind: struct.Struct) -> Put:
+    pack, size = kind.pack, kind.size
+
+    def put(out: bytearray, value: Any) -> None:
+        out += _FILL[-len(out) % size]
+        out += pack(value)
+
+    return put
+
+
+def _numbers(code: str) -> tuple[Put, Make]:
+    kind = np.dtype('<' + code)
+    size = kind.itemsize
+
+    def put(out: bytearray, value: Any) -> None:
+        data = np.asarray(value, kind)
+        out += _FILL[-len(out) % 4]
+        out += _COUNT.pack(data.size)
+        if data.size:
+            out += _FILL[-len(out) % size]
+            out += data.tobytes()
+
+    def make(value: Any) -> array[Any]:
+        # The form that rclpy takes without looking at each element.
+        return array(code, np.asarray(value, kind).tobytes())
+
+    return put, make
+
+
+def _put_text(out: bytearray, value: str) -> None:
+    data = value.encode()
+    out += _FILL[-len(out) % 4]
+    out += _COUNT.pack(len(data) + 1)
+    out += data
+    out.append(0)
+
+
+class _Names:
+    """Writes a sequence of texts, and remembers the bytes of the last one."""
+
+    def __init__(self) -> None:
+        self._last: tuple[str, ...] = ()
+        self._bytes = _COUNT.pack(0)
+
+    def __call__(self, out: bytearray, value: tuple[str, ...]) -> None:
+        if value is not self._last and value != self._last:
+            written = bytearray(_COUNT.pack(len(value)))
+            for text in value:
+                _put_text(written, text)
+            self._last, self._bytes = value, bytes(written)
+        out += _FILL[-len(out) % 4]
+        out += self._bytes
