@@ -54,7 +54,7 @@ WRITERS: Final = {
     kind: MessageWriter(kind)
     for kind in (
         MuscleAnalysisMsg, SpineLoadMsg, JointReactionsMsg, JointTorquesMsg, WrenchStamped,
-    )  # fmt: skip
+    )
 }
 
 _SOURCES = {
