@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import importlib
+import inspect
 import threading
 from collections import Counter
 from collections.abc import Callable
@@ -106,6 +107,9 @@ class PipelineNode(LifecycleNode):
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Start publishing; load in the background what is needed later."""
         self.active = True
+        # A first log message looks for its caller in all modules, for tens of milliseconds: now,
+        # not at the first lift.
+        inspect.getmodule(self.on_activate.__code__)
         self._search.begin()
         threading.Thread(target=self._load_later, name='load later').start()
         return super().on_activate(state)
