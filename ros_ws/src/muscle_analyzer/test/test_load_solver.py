@@ -38,7 +38,9 @@ def motion(lifting_multibody):
     return q, np.repeat([by], 5, axis=0), np.repeat([-2.0 * by], 5, axis=0), external
 
 
-@pytest.mark.parametrize(('criterion', 'stretched'), [('squares', True), ('min_max', False)])
+@pytest.mark.parametrize(
+    ('criterion', 'stretched'), [('squares', True), ('min_max', False), ('min_max', True)]
+)
 def test_frame_is_the_sum_of_its_steps(lifting_multibody, motion, criterion, stretched):
     """Kinematics to joint reaction by the functions one by one, with and without passive force."""
     options = MuscleAnalyzerOptions(

@@ -95,7 +95,7 @@ def columns_of(matrix: Array) -> Columns:
 
 
 @njit(cache=True, error_model='numpy')
-def _cholesky_solve(matrix: Array, vector: Array) -> bool:
+def cholesky_solve(matrix: Array, vector: Array) -> bool:
     """
     Solve in place; the solution replaces `vector`.  False if not positive definite.
 
@@ -193,7 +193,7 @@ def _hessian(
 
 
 @njit(cache=True, error_model='numpy')
-def _dot(a: Array, b: Array) -> float:
+def dot(a: Array, b: Array) -> float:
     """Give the product of two vectors."""
     total = 0.0
     for j in range(a.size):
@@ -315,17 +315,17 @@ def solve_dual(
             return activation, gradient, iterations, False
         _hessian(columns, reserve, slope, hessian)
         _copy(gradient, step)
-        if not _cholesky_solve(hessian, step):
+        if not cholesky_solve(hessian, step):
             return activation, gradient, iterations, False
         iterations += 1
-        first_slope = _dot(gradient, step)
+        first_slope = dot(gradient, step)
         for j in range(n_c):
             trial[j] = multiplier[j] + step[j]
         worst = _evaluate(
             columns, reserve, torque, lower, upper, weight, exponent, trial,
             activation, slope, gradient,
         )  # fmt: skip
-        whole_slope = _dot(gradient, step)
+        whole_slope = dot(gradient, step)
         if whole_slope < -SLOPE_SHARE * first_slope and worst > tolerance:
             size = _step_size(
                 columns, reserve, lower, upper, weight, exponent, multiplier, step,

@@ -1,20 +1,25 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
 """
-The min/max criterion of muscle recruitment by an interior-point method, compiled.
+The min/max criterion of muscle recruitment by a semismooth Newton method on its dual, compiled.
 
 The largest activation is made as small as the torques allow (Rasmussen, Damsgaard and Voigt 2001,
 J Biomech 34:409).  That alone leaves the muscles below the largest activation undetermined, so a
-small multiple of their squares decides among them::
+small multiple e of their squares decides among them::
 
     min  b + e sum w_i a_i^2 + sum c_j^2   subject to   A a + D c = tau,   l <= a <= b <= u
 
-The dual Newton method of the other criteria does not fit, as hardly any muscle is strictly between
-its bounds.  This is a predictor-corrector method for convex quadratic programmes (Mehrotra 1992,
-SIAM J Optim 2:575): activations and slacks are eliminated, so that each step factors one matrix
-with a row per coordinate, and b is left as a single unknown beside it.  Its solution stays off
-the bounds by the root of what is left of the complementarity; from near it an active set method
-finds the bounds that are met, and with them the exact solution.  Only that counts as converged.
+For given multipliers y of the balance the minimisers are ``c(y) = D y / 2``, ``a(y) = clip(A^T y /
+(2 e w), l, b)`` and the b at which the muscles that it holds back press on it with 1 in all, which
+is what a unit of b costs (`_largest`).  They are unique, so the dual function is concave with a
+piecewise linear gradient, as that of the other criteria is, and the same method finds its maximum
+(see `dual_newton`).  In the Hessian the muscles at b stand as one, with the sum of their columns.
+
+Hardly any muscle is strictly between its bounds where e is small, and from a start far away Newton
+steps then go from one set of bounds to the next, a thousand times or without end.  From nothing, e
+therefore falls from 1 to its value by tens, each problem starting from the solution of the one
+before.  That does not depend on how much the muscles can do: where they are far too weak, b is u
+and the reserves take the rest.
 """
 
 from typing import NamedTuple
@@ -23,219 +28,319 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from muscle_analyzer.core.dual_newton import (
+    LINE_TRIALS,
+    SLOPE_SHARE,
+    Columns,
+    cholesky_solve,
+    dot,
+)
+
 Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
+Places = NDArray[np.int8]
 
 #: e of the header: the largest activation exceeds the smallest possible one by at most e times
 #: the sum of squares that this saves.
 SQUARES_SHARE = 1e-3
-#: Mean product of multiplier and slack from which on the bounds that are met are tried for the
-#: exact solution, and the one beyond which that is given up.
-NEARLY, COMPLEMENTARITY = 1e-7, 1e-13
-#: By so much an activation may pass a bound that is not taken for met.
-OVERSHOOT = 1e-9
-#: Size of a multiplier, as a share of the largest pull, that is as good as none.
-ROUNDING = 1e-12
-#: Limit of rounds in which the bounds that are met are put right.
-POLISHES = 12
-#: Share of the way to the boundary that a step may go.
-TO_BOUNDARY = 0.995
+#: From nothing, one problem after the other has these shares.
+SHARES = (1.0, 0.1, 0.01, SQUARES_SHARE)
+#: Limit of Newton steps from a warm start: from farther away it is quicker to start from nothing.
+WARM_STEPS = 30
+#: Limit of rounds that take off what rounding left.
+REFINEMENTS = 3
+#: Places of an activation: at its lower bound, between its bounds, at b.
+LOW, FREE, HIGH = -1, 0, 1
 
 
-class _Point(NamedTuple):
-    """Activations; multipliers of a >= l, a <= b and the balance; b and the one of b <= u."""
-
-    a: Array
-    z: Array
-    v: Array
-    y: Array
-    scalar: Array
-
-
-@njit(cache=True, error_model='numpy')
-def _direction(
-    matrix: Array,
-    curvature: Array,
-    reserve: Array,
-    torque: Array,
-    lower: Array,
-    upper: float,
-    point: _Point,
-    target: _Point,
-) -> _Point:
-    """Give the Newton step towards complementarity products `target`."""
-    a, z, v, y = point.a, point.z, point.v, point.y
-    b, t = point.scalar
-    s, r, q = a - lower, b - a, upper - b
-    k = v / r
-    theta = 1.0 / (curvature + z / s + k)
-    pull = matrix.T @ y
-    rest_a = -(curvature * a - pull - target.z / s + target.v / r)
-    rest_b = -(1.0 - (target.v / r).sum() + target.scalar[1] / q)
-    rest_y = torque - matrix @ a - 0.5 * reserve * reserve * y
-    system = (matrix * theta) @ matrix.T
-    for j in range(reserve.size):
-        system[j, j] += 0.5 * reserve[j] * reserve[j]
-    border = matrix @ (theta * k)
-    right = np.empty((reserve.size, 2))
-    right[:, 0] = rest_y - matrix @ (theta * rest_a)
-    right[:, 1] = border
-    solved = np.linalg.solve(system, right)
-    size = k.sum() + t / q - (theta * k * k).sum()
-    db = rest_b + (theta * k * rest_a).sum() + border @ np.ascontiguousarray(solved[:, 0])
-    db /= size + border @ np.ascontiguousarray(solved[:, 1])
-    dy = solved[:, 0] - solved[:, 1] * db
-    da = theta * (rest_a + matrix.T @ dy + k * db)
-    dz = target.z / s - z - z / s * da
-    dv = target.v / r - v - k * (db - da)
-    dt = target.scalar[1] / q - t + t / q * db
-    return _Point(da, dz, dv, dy, np.array([db, dt]))
-
-
-@njit(cache=True, error_model='numpy')
-def _longest(values: Array, step: Array) -> float:
-    """Give the longest step, at most 1, that keeps positive values positive."""
-    longest = 1.0
-    for i in range(values.size):
-        if step[i] < 0.0:
-            longest = min(longest, -TO_BOUNDARY * values[i] / step[i])
-    return longest
-
-
-@njit(cache=True, error_model='numpy')
-def _steps(lower: Array, upper: float, point: _Point, step: _Point) -> tuple[float, float]:
-    """Give the longest steps of the unknowns and of the multipliers."""
-    b, t = point.scalar
-    db, dt = step.scalar
-    primal = min(_longest(point.a - lower, step.a), _longest(b - point.a, db - step.a))
-    primal = min(primal, _longest(np.array([upper - b]), np.array([-db])))
-    dual = min(_longest(point.z, step.z), _longest(point.v, step.v))
-    return primal, min(dual, _longest(np.array([t]), np.array([dt])))
-
-
-@njit(cache=True, error_model='numpy')
-def _moved(point: _Point, step: _Point, primal: float, dual: float) -> _Point:
-    scalar = point.scalar + np.array([primal, dual]) * step.scalar
-    return _Point(
-        point.a + primal * step.a,
-        point.z + dual * step.z,
-        point.v + dual * step.v,
-        point.y + dual * step.y,
-        scalar,
-    )
-
-
-@njit(cache=True, error_model='numpy')
-def _mean_product(lower: Array, upper: float, point: _Point) -> float:
-    b, t = point.scalar
-    total = (point.z * (point.a - lower)).sum() + (point.v * (b - point.a)).sum() + t * (upper - b)
-    return float(total) / (2 * point.a.size + 1)
-
-
-@njit(cache=True, error_model='numpy')
-def _on_bounds(
-    matrix: Array, curvature: Array, reserve: Array, torque: Array, lower: Array, fixed: float,
-    low: Flags, high: Flags,
-) -> tuple[Array, Array, Array]:
+class _Problem(NamedTuple):
     """
-    Solve with the bounds that are met given, and b too unless `fixed` is NaN.
+    The problem with one share of the squares.
 
-    Gives the activations, (y, b) and what is unbalanced.
-    """  # fmt: skip
-    free = np.isnan(fixed)
-    n = reserve.size
-    softness = np.where(low | high, 0.0, 1.0 / curvature)
-    at_low, at_high = np.where(low, lower, 0.0), high.astype(np.float64)
-    system, right = np.zeros((n + 1, n + 1)), np.zeros(n + 1)
-    system[:n, :n] = (matrix * softness) @ matrix.T
-    system[:n, n] = matrix @ at_high
-    system[n, n] = -(curvature @ at_high)
-    right[:n] = torque - matrix @ at_low
-    right[n] = 1.0 if free else fixed
+    Attributes
+    ----------
+    columns, reserve, torque
+        See `dual_newton.solve_dual`.
+    lower : (n_m,)
+        Bounds of the activations.
+    floor, top : float
+        Bounds of b: the largest lower bound, and u.
+    curvature : (n_m,)
+        2 e w.
+    """
+
+    columns: Columns
+    reserve: Array
+    torque: Array
+    lower: Array
+    floor: float
+    top: float
+    curvature: Array
+
+
+class _Iterate(NamedTuple):
+    """
+    Minimisers for given multipliers.
+
+    Attributes
+    ----------
+    multiplier : (n_c,)
+    pull : (n_m,)
+        A^T y.
+    activation : (n_m,)
+    place : (n_m + 1,)
+        Of the activations, and of b between floor and top.
+    gradient : (n_c,)
+        Of the dual: what is not balanced [N m].
+    """
+
+    multiplier: Array
+    pull: Array
+    activation: Array
+    place: Places
+    gradient: Array
+
+
+@njit(cache=True, error_model='numpy')
+def _largest(problem: _Problem, pull: Array, guess: float) -> float:
+    """
+    Give the b that muscles of these pulls press on with 1, or the bound of b next to it.
+
+    What they press with falls with b, piecewise linear and convex: from a guess one Newton step
+    leads to the left of the solution, and from there the steps rise to it.
+    """
+    b = min(max(guess, problem.floor), problem.top)
+    for trial in range(pull.size + 2):
+        pressed, stiffness = -1.0, 0.0
+        for i in range(pull.size):
+            held = pull[i] - problem.curvature[i] * b
+            if held > 0.0:
+                pressed += held
+                stiffness += problem.curvature[i]
+        following = problem.floor
+        if stiffness > 0.0:
+            following = min(max(b + pressed / stiffness, problem.floor), problem.top)
+        if following == b or (trial > 0 and following < b):
+            break
+        b = following
+    return b
+
+
+@njit(cache=True, error_model='numpy')
+def _pull(columns: Columns, multiplier: Array, pull: Array) -> None:
+    """Fill A^T y."""
+    start, row, value = columns
+    for i in range(pull.size):
+        pull[i] = 0.0
+        for k in range(start[i], start[i + 1]):
+            pull[i] += value[k] * multiplier[row[k]]
+
+
+@njit(cache=True, error_model='numpy')
+def _unbalanced(problem: _Problem, point: _Iterate) -> float:
+    """Fill what activations and multipliers leave unbalanced; give the largest of it."""
+    start, row, value = problem.columns
+    gradient = point.gradient
+    for j in range(gradient.size):
+        d = problem.reserve[j]
+        gradient[j] = problem.torque[j] - 0.5 * d * d * point.multiplier[j]
+    for i in range(point.activation.size):
+        for k in range(start[i], start[i + 1]):
+            gradient[row[k]] -= value[k] * point.activation[i]
+    worst = 0.0
+    for j in range(gradient.size):
+        if not abs(gradient[j]) <= worst:
+            worst = abs(gradient[j])
+    return worst
+
+
+@njit(cache=True, error_model='numpy')
+def _evaluate(problem: _Problem, point: _Iterate, guess: float) -> tuple[float, float, int]:
+    """
+    Fill the minimisers for the multipliers of an iterate.
+
+    Gives b, the largest entry of the gradient, and how many places have changed.
+    """
+    _pull(problem.columns, point.multiplier, point.pull)
+    b = _largest(problem, point.pull, guess)
+    changed = 0
+    for i in range(point.pull.size):
+        free = point.pull[i] / problem.curvature[i]
+        place = FREE
+        if free >= b:
+            free, place = b, HIGH
+        elif free <= problem.lower[i]:
+            free, place = problem.lower[i], LOW
+        point.activation[i] = free
+        changed += place != point.place[i]
+        point.place[i] = place
+    place = LOW if b <= problem.floor else HIGH if b >= problem.top else FREE
+    changed += place != point.place[-1]
+    point.place[-1] = place
+    return b, _unbalanced(problem, point), changed
+
+
+@njit(cache=True, error_model='numpy')
+def _step(problem: _Problem, place: Places, step: Array) -> tuple[bool, float]:
+    """
+    Solve for the Newton step in place of the gradient; give success, and how b goes with it.
+
+    Minus the dual's Hessian is that of reserves and free muscles, and of b if it is free.
+    """
+    start, row, value = problem.columns
+    n = step.size
+    hessian, together = np.zeros((n, n)), np.zeros(n)
+    stiffness = 0.0
     for j in range(n):
-        system[j, j] += 0.5 * reserve[j] * reserve[j]
-    if free:
-        system[n, :n] = system[:n, n]
-    else:
-        system[n, n] = 1.0
-    solved, rest = np.zeros(n + 1), right.copy()
-    found, residual = at_low.copy(), right[:n].copy()
-    # Later rounds take off what the first one lost by rounding.  They add to the activations: to
-    # divide the whole pull by the small curvature again would lose it anew.
-    for _ in range(3):
-        step = np.linalg.solve(system, rest)
-        solved += step
-        pull = matrix.T @ np.ascontiguousarray(step[:n])
-        found += softness * pull + step[n] * at_high
-        residual = torque - matrix @ found - 0.5 * reserve * reserve * solved[:n]
-        rest[:n], rest[n] = residual, 0.0
-    return found, solved, residual
+        hessian[j, j] = 0.5 * problem.reserve[j] * problem.reserve[j]
+    for i in range(place.size - 1):
+        if place[i] == HIGH:
+            stiffness += problem.curvature[i]
+            for k in range(start[i], start[i + 1]):
+                together[row[k]] += value[k]
+        elif place[i] == FREE:
+            for k in range(start[i], start[i + 1]):
+                scaled = value[k] / problem.curvature[i]
+                for other in range(start[i], k + 1):
+                    hessian[row[k], row[other]] += scaled * value[other]
+    if place[-1] == FREE:
+        for j in range(n):
+            if together[j] != 0.0:
+                for k in range(j + 1):
+                    hessian[j, k] += together[j] / stiffness * together[k]
+    if not cholesky_solve(hessian, step):
+        return False, 0.0
+    return True, dot(together, step) / stiffness if place[-1] == FREE else 0.0
 
 
 @njit(cache=True, error_model='numpy')
-def _polish(
-    matrix: Array, curvature: Array, reserve: Array, torque: Array, lower: Array, upper: float,
-    tolerance: float, point: _Point,
-) -> bool:
+def _step_size(
+    problem: _Problem, multiplier: Array, step: Array, guess: float, first: float, whole: float
+) -> float:
     """
-    Solve for the activations exactly, from the bounds that are met; changes the iterate.
+    Find where along a step that is too long the slope of the dual has all but gone.
 
-    An interior point stays off its bounds by the root of the complementarity where multipliers are
-    small, so that some bounds are taken for met that are not, or the other way round.  These are
-    put right one round after the other, as a solution with wrong bounds shows which they are
-    (primal-dual active set method, Hintermueller, Ito and Kunisch 2002, SIAM J Optim 13:865).
-    Returns False, and changes nothing, if that does not come to an end.
-    """  # fmt: skip
-    a, z, v, y, scalar = point
-    b, t = scalar
-    # Without its bound a muscle would go on by its multiplier over its curvature.
-    low = z > curvature * (a - lower)
-    high = (v > curvature * (b - a)) & ~low
-    n, floor = reserve.size, lower.max()
-    fixed = upper if t > upper - b else np.nan
-    for _ in range(POLISHES):
-        if np.isnan(fixed) and not high.any():
-            # Nothing presses on b: it falls to the largest of the lower bounds.
-            fixed = floor
-        found, solved, residual = _on_bounds(
-            matrix, curvature, reserve, torque, lower, fixed, low, high
-        )
-        largest = solved[n]
-        pull = matrix.T @ np.ascontiguousarray(solved[:n])
-        force = pull - curvature * found
-        slack = ROUNDING * (1.0 + np.abs(pull).max())
-        free = ~low & ~high
-        to_low = free & (found < lower - OVERSHOOT)
-        to_high = free & (found > largest + OVERSHOOT)
-        freed = (low & (force > slack)) | (high & (force < -slack))
-        # What the muscles at b press on it, less what a unit of b costs.
-        pressed = np.where(high, force, 0.0).sum() - 1.0
-        wanted = fixed
-        lifted = fixed == floor and pressed > slack
-        if lifted or (fixed == upper and pressed < -slack):
-            wanted = np.nan
-        elif np.isnan(fixed) and largest > upper + OVERSHOOT:
-            wanted = upper
-        elif np.isnan(fixed) and largest < floor - OVERSHOOT:
-            wanted = floor
-        same = wanted == fixed or (np.isnan(wanted) and np.isnan(fixed))
-        if same and not (to_low.any() or to_high.any() or freed.any()):
-            if not np.abs(residual).max() <= tolerance:
-                return False
-            largest = min(max(largest, floor), upper)
-            a[:] = np.minimum(np.maximum(found, lower), largest)
-            y[:] = solved[:n]
-            scalar[0] = largest
-            return True
-        low = (low & ~freed) | to_low
-        high = (high & ~freed) | to_high
-        fixed = wanted
-    return False
+    As in `dual_newton` by false position with the Illinois rule, between the slopes `first`
+    (positive) at the beginning and `whole` (negative) at the end.
+    """
+    n_m = problem.lower.size
+    pull, turn, here, before = np.empty(n_m), np.empty(n_m), np.empty(n_m), np.empty(n_m)
+    _pull(problem.columns, multiplier, pull)
+    _pull(problem.columns, step, turn)
+    b = _largest(problem, pull, guess)
+    bend = 0.0
+    for i in range(n_m):
+        before[i] = min(max(pull[i] / problem.curvature[i], problem.lower[i]), b)
+    for j in range(step.size):
+        bend += 0.5 * (problem.reserve[j] * step[j]) ** 2
+    near, near_slope, past, past_slope, last = 0.0, first, 1.0, whole, 0
+    size = near_slope / (near_slope - past_slope)
+    for _ in range(LINE_TRIALS):
+        for i in range(n_m):
+            here[i] = pull[i] + size * turn[i]
+        b = _largest(problem, here, b)
+        slope = first - size * bend
+        for i in range(n_m):
+            now = min(max(here[i] / problem.curvature[i], problem.lower[i]), b)
+            slope -= turn[i] * (now - before[i])
+        if abs(slope) <= SLOPE_SHARE * first:
+            break
+        if slope > 0.0:
+            near, near_slope = size, slope
+            if last == 1:
+                past_slope *= 0.5
+            last = 1
+        else:
+            past, past_slope = size, slope
+            if last == -1:
+                near_slope *= 0.5
+            last = -1
+        size = near + (past - near) * near_slope / (near_slope - past_slope)
+    return size
+
+
+@njit(cache=True, error_model='numpy')
+def _maximise(
+    problem: _Problem, point: _Iterate, tolerance: float, max_iterations: int
+) -> tuple[float, int, bool]:
+    """
+    Maximise the dual from the multipliers of an iterate; give b, the steps, and success.
+
+    A whole step after which every activation is where it was has found the solution, but for
+    rounding.  A step cut short ends where some muscle meets or leaves a bound: if the next one
+    took it for fixed again, the two would go to and fro across that ridge.  It counts as free
+    then, which the step stays an ascent with.
+    """
+    multiplier = point.multiplier
+    begin, step = np.empty_like(multiplier), np.empty_like(multiplier)
+    here, before = np.empty_like(point.place), np.empty_like(point.place)
+    b, worst, _ = _evaluate(problem, point, problem.floor)
+    iterations, short = 0, False
+    while not worst <= tolerance:
+        if iterations == max_iterations or not np.isfinite(worst):
+            return b, iterations, False
+        here[:] = point.place
+        freed = 0
+        if short:
+            for i in range(here.size - 1):
+                if before[i] == FREE and here[i] != FREE:
+                    here[i] = FREE
+                    freed += 1
+        before[:] = point.place
+        begin[:], step[:] = multiplier, point.gradient
+        if not _step(problem, here, step)[0]:
+            return b, iterations, False
+        iterations += 1
+        first, guess = dot(point.gradient, step), b
+        multiplier[:] = begin + step
+        b, worst, changed = _evaluate(problem, point, guess)
+        if changed == 0 and freed == 0:
+            break
+        whole = dot(point.gradient, step)
+        short = whole < -SLOPE_SHARE * first and worst > tolerance
+        if short:
+            multiplier[:] = begin + step * _step_size(problem, begin, step, guess, first, whole)
+            b, worst, _ = _evaluate(problem, point, b)
+    return b, iterations, True
+
+
+@njit(cache=True, error_model='numpy')
+def _refine(problem: _Problem, point: _Iterate, b: float) -> tuple[float, float]:
+    """
+    Take off what rounding left of the balance; give b and what is left.
+
+    Changes are added to the activations: to divide the whole pull by the small curvature again
+    would lose them anew.
+    """
+    worst = _unbalanced(problem, point)
+    n_m = point.pull.size
+    change, before = np.empty(n_m), np.empty(n_m)
+    step = np.empty_like(point.gradient)
+    for _ in range(REFINEMENTS):
+        step[:], before[:] = point.gradient, point.activation
+        found, rise = _step(problem, point.place, step)
+        if not found:
+            break
+        _pull(problem.columns, step, change)
+        for i in range(n_m):
+            if point.place[i] == HIGH:
+                point.activation[i] = b + rise
+            elif point.place[i] == FREE:
+                moved = before[i] + change[i] / problem.curvature[i]
+                point.activation[i] = min(max(moved, problem.lower[i]), b + rise)
+        point.multiplier[:] += step
+        left = _unbalanced(problem, point)
+        if not left < worst:
+            point.multiplier[:] -= step
+            point.activation[:] = before
+            _unbalanced(problem, point)
+            break
+        b, worst = b + rise, left
+    return b, worst
 
 
 @njit(cache=True, error_model='numpy')
 def solve_min_max(
-    matrix: Array,
+    columns: Columns,
     reserve: Array,
     torque: Array,
     lower: Array,
@@ -248,8 +353,8 @@ def solve_min_max(
     """
     Make the largest activation smallest.
 
-    Parameters are those of `dual_newton.solve_dual`, without the exponent; there is no warm start,
-    and `multiplier` only takes the solution.
+    Parameters are those of `dual_newton.solve_dual`, without the exponent; the limit of Newton
+    steps is that for each share of the squares.
 
     Returns
     -------
@@ -261,48 +366,25 @@ def solve_min_max(
     cap : float
         The largest activation b.
     """
-    n_c, n_m = matrix.shape
-    top = upper.min()
-    curvature = 2.0 * SQUARES_SHARE * weight
-    start = 0.5 * (lower.max() + top)
-    even = np.full(n_m, 1.0 / n_m)
-    point = _Point(
-        0.5 * (lower + start), even.copy(), even.copy(), np.zeros(n_c), np.array([start, 1.0])
+    n_c, n_m = torque.size, lower.size
+    floor, top = lower.max(), upper.min()
+    point = _Iterate(
+        multiplier, np.empty(n_m), np.empty(n_m), np.zeros(n_m + 1, np.int8), np.empty(n_c)
     )
-    iterations = 0
-    while True:
-        y = point.y
-        residual = torque - matrix @ point.a - 0.5 * reserve * reserve * y
-        product = _mean_product(lower, top, point)
-        share = product / (1.0 + point.scalar[1])
-        if share <= NEARLY and _polish(
-            matrix, curvature, reserve, torque, lower, top, tolerance, point
-        ):
-            residual = torque - matrix @ point.a - 0.5 * reserve * reserve * point.y
-            break
-        # Without the exact solution it is none.  Slacks that round to nothing end the method.
-        slack = min((point.a - lower).min(), (point.scalar[0] - point.a).min())
-        lost = min(slack, top - point.scalar[0]) <= 0.0 or share <= COMPLEMENTARITY
-        if lost or iterations == max_iterations or not np.isfinite(product):
-            multiplier[:] = y
-            return point.a, residual, iterations, False, point.scalar[0]
-        none = np.zeros(n_m)
-        target = _Point(none, none, none, y, np.zeros(2))
-        step = _direction(matrix, curvature, reserve, torque, lower, top, point, target)
-        primal, dual = _steps(lower, top, point, step)
-        ahead = _mean_product(lower, top, _moved(point, step, primal, dual))
-        centre = (ahead / product) ** 3 * product
-        da, db = step.a, step.scalar[0]
-        target = _Point(
-            none,
-            centre - da * step.z,
-            centre - (db - da) * step.v,
-            y,
-            np.array([0.0, centre + db * step.scalar[1]]),
-        )
-        step = _direction(matrix, curvature, reserve, torque, lower, top, point, target)
-        primal, dual = _steps(lower, top, point, step)
-        point = _moved(point, step, primal, dual)
-        iterations += 1
-    multiplier[:] = point.y
-    return point.a, residual, iterations, True, point.scalar[0]
+    iterations, b, found = 0, floor, False
+    problem = _Problem(
+        columns, reserve, torque, lower, floor, top, 2.0 * SQUARES_SHARE * weight
+    )
+    if multiplier.any():
+        limit = min(WARM_STEPS, max_iterations)
+        b, iterations, found = _maximise(problem, point, tolerance, limit)
+    if not found:
+        multiplier[:] = 0.0
+        for share in SHARES:
+            problem = _Problem(columns, reserve, torque, lower, floor, top, 2.0 * share * weight)
+            b, more, found = _maximise(problem, point, tolerance, max_iterations)
+            iterations += more
+            if not found:
+                return point.activation, point.gradient, iterations, False, b
+    b, left = _refine(problem, point, b)
+    return point.activation, point.gradient, iterations, left <= tolerance, b

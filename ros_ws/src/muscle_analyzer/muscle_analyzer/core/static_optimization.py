@@ -269,9 +269,11 @@ class StaticOptimization:
         multiplier = first_guess(self.past)
         share, cap, at_top = 1.0, np.inf, 0.0
         if self.criterion is Criterion.MIN_MAX:
-            activation, residual, iterations, converged, cap = self._min_max(
-                matrix, torque, multiplier
-            )
+            a = self.actuators
+            activation, residual, iterations, converged, cap = solve_min_max(
+                columns, a.unit, torque, a.lower, a.upper, a.weight, multiplier,
+                residual_limit(a, torque), a.max_iterations,
+            )  # fmt: skip
             share, at_top = SQUARES_SHARE, cap
         else:
             activation, residual, iterations, converged = share_torque(
@@ -328,18 +330,6 @@ class StaticOptimization:
             build_time=build_time,
             solve_time=solve_time,
         )
-
-    def _min_max(
-        self, matrix: Array, torque: Array, multiplier: Array
-    ) -> tuple[Array, Array, int, bool, float]:
-        """Give activations, residual, steps, success and the largest activation."""
-        a = self.actuators
-        # The small curvature of its cost magnifies the rounding of the multipliers.
-        limit = 8.0 * residual_limit(a, torque)
-        return solve_min_max(
-            matrix, a.unit, torque, a.lower, a.upper, a.weight, multiplier, limit,
-            a.max_iterations,
-        )  # fmt: skip
 
     def _checked(self, matrix: Array, torque: Array) -> tuple[Array, Array]:
         """Give the input as contiguous arrays of the right shape and finite numbers."""
