@@ -15,7 +15,12 @@ import pytest
 from muscle_analyzer.core.kinematics import body_jacobians, forward_kinematics
 from muscle_analyzer.core.multibody import compile_model
 from muscle_analyzer.core.muscle_path_table import path_table
-from muscle_analyzer.core.muscle_paths import body_wrenches, muscle_paths, posture_paths
+from muscle_analyzer.core.muscle_paths import (
+    body_wrenches,
+    crossed_paths,
+    muscle_paths,
+    posture_paths,
+)
 from muscle_analyzer.core.osim_reader import read_osim
 from muscle_analyzer.core.subject_model import lifting_model_path
 
@@ -122,6 +127,26 @@ def test_moment_arms_are_minus_the_derivatives_of_the_lengths():
             derivative[:, j] = (longer - paths_at(model, table, q - shift).length) / (2 * step)
         error = np.abs(arms + derivative)[smooth]
         assert error.max() < 1e-6
+
+
+def test_arms_of_crossed_coordinates_are_all_that_are_not_zero():
+    model = compiled('generic')
+    table = path_table(model)
+    q = model.lower + 0.6 * (model.upper - model.lower)
+    bodies = forward_kinematics(model.tree, q, np.zeros_like(q), np.zeros_like(q))
+    found, whole = crossed_paths(table, bodies), paths_at(model, table, q)
+    assert np.array_equal(found.length, whole.length)
+    assert np.array_equal(found.wrench, whole.wrench)
+    muscle = np.repeat(np.arange(found.length.size), np.diff(table.crossed_start))
+    arms = np.zeros_like(whole.moment_arm)
+    arms[muscle, table.crossed_index] = found.arm
+    assert np.array_equal(arms, whole.moment_arm)
+    # Against the definition: the wrenches' work per rate of each coordinate.
+    jacobian = body_jacobians(model.tree, bodies)
+    owner = np.repeat(np.arange(found.length.size), np.diff(table.body_start))
+    work = np.einsum('ei,eij->ej', whole.wrench, jacobian[table.body_index])
+    total = np.array([work[owner == m].sum(axis=0) for m in range(found.length.size)])
+    np.testing.assert_allclose(arms, total, atol=1e-13)
 
 
 def test_forces_on_the_bodies_balance_and_do_the_work_of_the_moment_arms():

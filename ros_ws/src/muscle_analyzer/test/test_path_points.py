@@ -12,7 +12,7 @@ from muscle_analyzer.core.exceptions import OsimFormatError
 from muscle_analyzer.core.kinematics import body_jacobians, forward_kinematics
 from muscle_analyzer.core.multibody import compile_model
 from muscle_analyzer.core.muscle_path_table import path_table
-from muscle_analyzer.core.muscle_paths import muscle_paths, posture_paths
+from muscle_analyzer.core.muscle_paths import crossed_paths, muscle_paths, posture_paths
 from muscle_analyzer.core.osim_reader import read_osim
 from muscle_analyzer.core.subject_model import default_path_lengths
 
@@ -69,6 +69,9 @@ def check_moment_arms(model, table, q):
         shift = 1e-6 * (np.arange(q.size) == j)
         longer, shorter = (paths_at(model, table, q + s).length for s in (shift, -shift))
         np.testing.assert_allclose(arms[:, j], -(longer - shorter) / 2e-6, atol=1e-9)
+    state = forward_kinematics(model.tree, q, np.zeros_like(q), np.zeros_like(q))
+    crossed = table.crossed_index[: table.crossed_start[1]]
+    np.testing.assert_allclose(crossed_paths(table, state).arm, arms[0, crossed], rtol=1e-15)
 
 
 def turned(point, angle):

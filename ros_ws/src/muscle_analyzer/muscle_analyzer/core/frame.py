@@ -23,11 +23,11 @@ from muscle_analyzer.core.held import Held
 from muscle_analyzer.core.inverse_dynamics import inverse_dynamics, wrench_at
 from muscle_analyzer.core.joint_loads import JointFrames, joint_loads
 from muscle_analyzer.core.joint_reaction import joint_reactions, net_moment
-from muscle_analyzer.core.kinematics import BodyState, body_jacobians, forward_kinematics
+from muscle_analyzer.core.kinematics import BodyState, forward_kinematics
 from muscle_analyzer.core.multibody import Tree
 from muscle_analyzer.core.muscle_curves import MuscleParameters, strength
 from muscle_analyzer.core.muscle_path_table import PathTable
-from muscle_analyzer.core.muscle_paths import body_wrenches, posture_paths
+from muscle_analyzer.core.muscle_paths import body_wrenches, crossed_paths
 from muscle_analyzer.core.torque_sharing import (
     Actuators,
     account,
@@ -227,14 +227,14 @@ def demand(model: FrameModel, q: Array, qd: Array, qdd: Array, external: Array) 
     start, index = table.crossed_start, table.crossed_index
     state = forward_kinematics(model.tree, q, qd, qdd)
     dynamics = inverse_dynamics(model.tree, state, external)
-    paths = posture_paths(table, state, body_jacobians(model.tree, state))
+    paths = crossed_paths(table, state)
     n_m, n_c = paths.length.size, model.balanced.size
-    arm = paths.moment_arm
+    arm = paths.arm
     if model.force_length_velocity:
         speed = np.zeros(n_m)
         for m in range(n_m):
             for c in range(start[m], start[m + 1]):
-                speed[m] -= arm[m, index[c]] * qd[index[c]]
+                speed[m] -= arm[c] * qd[index[c]]
         active, passive = strength(model.muscles, paths.length, speed, model.passive_force)
     else:
         active, passive = model.muscles.max_isometric_force.copy(), np.zeros(n_m)
@@ -254,8 +254,8 @@ def demand(model: FrameModel, q: Array, qd: Array, qdd: Array, external: Array) 
             if j < 0:
                 continue
             row[n] = j
-            value[n] = arm[m, index[c]] * active[m]
-            to_balance[j] -= arm[m, index[c]] * passive[m]
+            value[n] = arm[c] * active[m]
+            to_balance[j] -= arm[c] * passive[m]
             if not np.isfinite(value[n]) and (wrong < 0 or j < wrong):
                 wrong = j
             n += 1

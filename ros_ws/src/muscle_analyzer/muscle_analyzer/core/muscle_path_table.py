@@ -52,6 +52,9 @@ class ProductTable(NamedTuple):
     ----------
     column_body, column_coordinate : (n_j,)
         Columns of the Jacobians that are not zero whatever the posture, as far as used.
+    motion_start, motion : (n_j + 1,), (n_l,)
+        Elementary motions that make column c are ``motion[motion_start[c]]`` to
+        ``motion[motion_start[c + 1] - 1]``, those nearer the ground first.
     start : (n_k + 1,)
         Products for place k of `PathTable.crossed_index` are ``start[k]`` to ``start[k + 1] - 1``.
     entry, column : (n_t,)
@@ -60,6 +63,8 @@ class ProductTable(NamedTuple):
 
     column_body: IntArray
     column_coordinate: IntArray
+    motion_start: IntArray
+    motion: IntArray
     start: IntArray
     entry: IntArray
     column: IntArray
@@ -249,10 +254,13 @@ def _products(
             for k in moved:
                 entries.append(int(body_start[m]) + k)
                 of_columns.append(columns.setdefault((bodies[m][k], q), len(columns)))
+    motions = [sorted(driven[body][q]) for body, q in columns]
     pairs = np.array(list(columns), np.int64).reshape(-1, 2)
     return ProductTable(
         column_body=np.ascontiguousarray(pairs[:, 0]),
         column_coordinate=np.ascontiguousarray(pairs[:, 1]),
+        motion_start=starts([len(own) for own in motions]),
+        motion=np.array([e for own in motions for e in own], np.int64),
         start=starts(counts),
         entry=np.array(entries, np.int64),
         column=np.array(of_columns, np.int64),

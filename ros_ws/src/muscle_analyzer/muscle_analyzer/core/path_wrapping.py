@@ -6,9 +6,8 @@ Where a path of points leaves and meets the surfaces that it wraps over, compile
 Which segment of the path wraps over an object, in which order objects are tried and how often, is
 as in OpenSim's ``GeometryPath``; the single surfaces are in modules of their own.
 
-Arrays are given whole, with the numbers of rows: numba counts references of every row that is cut
-out as an array of its own, and of every array of a tuple of arrays, which costs more than the
-arithmetic.
+Arrays are given one by one and whole, with the numbers of rows: rows that are cut out as arrays of
+their own, and tuples of arrays, cost more to hand over than the arithmetic.
 """
 
 from __future__ import annotations
@@ -20,6 +19,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from muscle_analyzer.core.ellipsoid_wrapping import wrap_ellipsoid
+from muscle_analyzer.core.kernel import kernel
 from muscle_analyzer.core.sphere_wrapping import wrap_sphere
 from muscle_analyzer.core.torus_wrapping import wrap_torus
 from muscle_analyzer.core.wrap_table import CYLINDER, ELLIPSOID, SPHERE, WrapTable
@@ -33,15 +33,14 @@ IntArray = NDArray[np.int64]
 WRAP_ROUNDS, WRAP_TOLERANCE = 8, 1e-9
 
 
-@njit(cache=True, error_model='numpy', inline='always')
-def place_surfaces(wraps: WrapTable, position: Array, rotation: Array) -> Array:
+@kernel
+def place_surfaces(wraps: WrapTable, position: Array, rotation: Array, frame: Array) -> None:
     """
-    Give origin and axes (n_o, 12), ground from surface, of all wrap objects.
+    Fill origin and axes (n_o, 12), ground from surface, of all wrap objects.
 
     `position` (n_b, 3) and `rotation` (n_b, 3, 3) are those of the bodies.
     """
     bodies, turn, shift = wraps.body, wraps.rotation, wraps.translation
-    frame = np.empty((bodies.size, 12))
     for k in range(bodies.size):
         body = bodies[k]
         for i in range(3):
@@ -53,7 +52,6 @@ def place_surfaces(wraps: WrapTable, position: Array, rotation: Array) -> Array:
                 frame[k, 3 + 3 * i + j] = (
                     rx * turn[k, 0, j] + ry * turn[k, 1, j] + rz * turn[k, 2, j]
                 )
-    return frame
 
 
 @njit(cache=True, error_model='numpy')
