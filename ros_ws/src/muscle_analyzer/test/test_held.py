@@ -12,9 +12,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+import pytest
 from numba import njit
 from numpy.typing import NDArray
 
+from muscle_analyzer.core import held as module
 from muscle_analyzer.core.held import Held, hold
 
 
@@ -30,6 +32,12 @@ class Outer(NamedTuple):
     inner: Inner
     number: NDArray[np.int64]
     factor: float
+
+
+@pytest.fixture(autouse=True)
+def _uncached(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Keep the tuples of this file out of the cache: no other process could read its index."""
+    monkeypatch.setattr(module, '_hold', njit(module._hold.py_func))
 
 
 @njit
