@@ -34,11 +34,11 @@ from lifting_node.stamps import to_seconds, to_stamp
 
 Block = SpineLoad | JointTorques | MuscleAnalysis
 
-#: What the monitor looks at in the analyzer's messages: in each, and in one of a kind.
-BLOCK = ('header', 'lift_id', 'source', 'time_from_start', 'status')
-SPINE = ('compression', 'anterior_shear')
-TORQUES = ('joint_names', 'torque', 'torque_lower', 'torque_upper')
-ACTIVATIONS = ('muscle_names', 'activation')
+_BLOCK = ('header', 'lift_id', 'source', 'time_from_start', 'status')
+#: What the monitor looks at in the analyzer's messages.
+SPINE_FIELDS = (*_BLOCK, 'compression', 'anterior_shear')
+TORQUE_FIELDS = (*_BLOCK, 'joint_names', 'torque', 'torque_lower', 'torque_upper')
+ACTIVATION_FIELDS = (*_BLOCK, 'muscle_names', 'activation')
 
 _SOURCES = {SpineLoad.MEASURED: MEASURED, SpineLoad.PREDICTED: PREDICTED}
 
@@ -96,7 +96,8 @@ def rows(message: object, field: str, n: int, width: int) -> FloatArray:
 def spine_from_msg(message: SpineLoad) -> SpineSeries:
     """Return the L5-S1 load of a block."""
     time, solved = block_clock(message)
-    compression, shear = (rows(message, field, time.size, 1)[:, 0] for field in SPINE)
+    compression, shear = (rows(message, field, time.size, 1)[:, 0]
+                          for field in ('compression', 'anterior_shear'))
     return SpineSeries(time, compression, shear, solved)
 
 
@@ -104,7 +105,7 @@ def torques_from_msg(message: JointTorques) -> TorqueSeries:
     """Return the joint torques of a block."""
     time, solved = block_clock(message)
     torque, lower, upper = (rows(message, field, time.size, len(message.joint_names))
-                            for field in TORQUES[1:])
+                            for field in ('torque', 'torque_lower', 'torque_upper'))
     return TorqueSeries(time, tuple(message.joint_names), torque, lower, upper, solved)
 
 

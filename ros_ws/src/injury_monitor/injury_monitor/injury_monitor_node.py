@@ -76,11 +76,13 @@ class InjuryMonitorNode(PipelineNode):
         # Only for its filter delay, which does not change: dropped after the first message.
         self._delay_input: Subscription | None = self.create_subscription(
             BodyMotion, 'body_motion', self._on_body_motion, qos.FRAMES)
-        self._subscribe_block(SpineLoad, 'spine_load', self._on_spine_load, conversions.SPINE)
-        self._subscribe_block(JointTorques, 'joint_torques', self._on_joint_torques,
-                              conversions.TORQUES)
-        self._subscribe_block(MuscleAnalysis, 'muscle_analysis', self._on_muscle_analysis,
-                              conversions.ACTIVATIONS)
+        self.subscribe(SpineLoad, 'spine_load', viewed(
+            SpineLoad, self._on_spine_load, conversions.SPINE_FIELDS), qos.FRAMES, raw=True)
+        self.subscribe(JointTorques, 'joint_torques', viewed(
+            JointTorques, self._on_joint_torques, conversions.TORQUE_FIELDS), qos.FRAMES, raw=True)
+        self.subscribe(MuscleAnalysis, 'muscle_analysis', viewed(
+            MuscleAnalysis, self._on_muscle_analysis, conversions.ACTIVATION_FIELDS), qos.FRAMES,
+            raw=True)
         self.subscribe(MeasuredLift, 'measured_lift', self._on_measured_lift, qos.RESULTS)
         self.subscribe(PredictedLift, 'predicted_lift', self._on_predicted_lift, qos.RESULTS)
         self._operator_services = [
@@ -88,13 +90,6 @@ class InjuryMonitorNode(PipelineNode):
             self.create_service(ResetAlarm, '~/reset_alarm', self._reset),
             self.create_service(ShelveAlarm, '~/shelve_alarm', self._shelve)]
         self._housekeeping = self.create_timer(1.0, self._keep_house)
-
-    def _subscribe_block(self, message_type: type, topic: str, callback: Callable[[Any], None],
-                         columns: tuple[str, ...]) -> None:
-        """Subscribe to results of the analyzer, of which only a part is looked at."""
-        fields = (*conversions.BLOCK, *columns)
-        self.subscribe(message_type, topic, viewed(message_type, callback, fields), qos.FRAMES,
-                       raw=True)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Drop the services and the timer with the rest."""

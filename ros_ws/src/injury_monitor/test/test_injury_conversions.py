@@ -93,21 +93,21 @@ def test_row_major_blocks_keep_samples_and_columns_apart():
     np.testing.assert_array_equal(active.activation, [[0.1, 0.2, 0.3]])
 
 
-@pytest.mark.parametrize(('message', 'read', 'columns'), [
+@pytest.mark.parametrize(('message', 'read', 'fields'), [
     (SpineLoad(source=SpineLoad.MEASURED, time_from_start=[0.0, 0.1], compression=[1.0, 2.0],
                anterior_shear=[3.0, 4.0], status=[0, 302]),
-     conversions.spine_from_msg, conversions.SPINE),
+     conversions.spine_from_msg, conversions.SPINE_FIELDS),
     (JointTorques(source=JointTorques.PREDICTED, time_from_start=[0.0], joint_names=['a', 'b'],
                   torque=[1.0, 2.0], torque_lower=[-1.0, math.nan], torque_upper=[5.0, math.nan],
                   status=[0]),
-     conversions.torques_from_msg, conversions.TORQUES),
+     conversions.torques_from_msg, conversions.TORQUE_FIELDS),
     (MuscleAnalysis(source=MuscleAnalysis.LIVE, time_from_start=[0.0], muscle_names=['a', 'b'],
                     activation=[0.1, 0.2], force=[10.0, 20.0], status=[0]),
-     conversions.activations_from_msg, conversions.ACTIVATIONS)])
-def test_what_the_node_sees_of_a_message_is_what_is_in_it(message, read, columns):
+     conversions.activations_from_msg, conversions.ACTIVATION_FIELDS)])
+def test_what_the_node_sees_of_a_message_is_what_is_in_it(message, read, fields):
     stamped(message, 1_763_000_000.25).lift_id = 'lift_001'
     kind = type(message)
-    view = MessageView(kind, (*conversions.BLOCK, *columns)).read(serialize_message(message))
+    view = MessageView(kind, fields).read(serialize_message(message))
     assert view.lift_id == 'lift_001'
     assert conversions.lift_source(view) == conversions.lift_source(message)
     seen, expected = vars(read(view)), vars(read(message))

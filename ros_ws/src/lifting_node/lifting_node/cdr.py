@@ -1,17 +1,31 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""A reader of serialised messages (common data representation of the OMG), for fast streams."""
+"""What serialised messages consist of (common data representation of the OMG), and a reader."""
 
 from __future__ import annotations
 
+import importlib
 import struct
-from typing import Final
+from typing import Any, Final
 
-#: Bytes before the content; alignment is counted from behind them.
-HEAD: Final = 4
+from rosidl_parser.definition import (
+    BasicType,
+    NamespacedType,
+    UnboundedSequence,
+    UnboundedString,
+)
+
+#: Before the content of a little-endian message; alignment is counted from behind it.
+LITTLE_ENDIAN_HEAD: Final = b'\0\1\0\0'
+HEAD: Final = len(LITTLE_ENDIAN_HEAD)
+#: How many follow: texts, numbers, bytes of a text.
+COUNT: Final = struct.Struct('<I')
 _LITTLE_ENDIAN: Final = 1
-_UNSIGNED: Final = struct.Struct('<I')
 _TIME: Final = struct.Struct('<iI')
+
+
+#: Codes of `struct`, numpy and `array` for the numbers in messages of the graph.
+_NUMBERS: Final = {'double': 'd', 'uint8': 'B', 'uint16': 'H', 'uint32': 'I', 'int32': 'i'}
 
 
 class CdrError(ValueError):
@@ -55,7 +69,7 @@ class Reader:
     def unsigned(self) -> tuple[int, range]:
         """Return an unsigned integer of 32 bits and the places of its bytes."""
         begin = self.skip(4, 4)
-        return _UNSIGNED.unpack_from(self._data, begin)[0], range(begin, begin + 4)
+        return COUNT.unpack_from(self._data, begin)[0], range(begin, begin + 4)
 
     def stamp(self) -> float:
         """Return a time [s]."""
@@ -77,3 +91,33 @@ class Reader:
         except UnicodeDecodeError as error:
             raise CdrError(f'a text at byte {begin} is not in UTF-8') from error
         return text, [*places, *range(begin, begin + size)]
+
+
+def fields(message_type: Any) -> list[tuple[str, bool, Any]]:
+    """Return name, whether it is a sequence, and content of each field of a type of messages.
+
+    The content is a code of `struct` for a number, the class `str` for a text, or the type of a
+    message within the message.
+
+    Raises
+    ------
+    TypeError
+        If a field is none of these; names it.
+    """
+    owner = message_type.__name__
+    names = message_type.get_fields_and_field_types()
+    return [
+        (name, isinstance(kind, UnboundedSequence), _content(f'{owner}.{name}', kind))
+        for name, kind in zip(names, message_type.SLOT_TYPES, strict=True)
+    ]
+
+
+def _content(field: str, kind: Any) -> Any:
+    one = kind.value_type if isinstance(kind, UnboundedSequence) else kind
+    if isinstance(one, BasicType) and one.typename in _NUMBERS:
+        return _NUMBERS[one.typename]
+    if isinstance(one, UnboundedString):
+        return str
+    if isinstance(one, NamespacedType) and one is kind:
+        return getattr(importlib.import_module('.'.join(one.namespaces)), one.name)
+    raise TypeError(f'{field}: a {kind} can neither be viewed nor written')

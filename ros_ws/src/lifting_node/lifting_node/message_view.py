@@ -10,7 +10,6 @@ from sample to sample, are made once and then only compared.
 
 from __future__ import annotations
 
-import importlib
 import struct
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
@@ -18,21 +17,13 @@ from types import SimpleNamespace
 from typing import Any, Final
 
 import numpy as np
-from rosidl_parser.definition import (
-    BasicType,
-    NamespacedType,
-    UnboundedSequence,
-    UnboundedString,
-)
 
-from lifting_node.cdr import HEAD, CdrError
+from lifting_node import cdr
+from lifting_node.cdr import COUNT, HEAD, LITTLE_ENDIAN_HEAD, CdrError
 
 #: Takes the bytes behind the head and a place in them; returns the value and the place behind it.
 Take = Callable[[bytes, int], tuple[Any, int]]
 
-_LITTLE_ENDIAN: Final = 1
-_NUMBERS: Final = {'double': 'd', 'uint8': 'B', 'uint16': 'H', 'uint32': 'I', 'int32': 'i'}
-_COUNT: Final = struct.Struct('<I')
 #: Lists of names kept for one field: those of a few skeletons and muscle models.
 _LISTS: Final = 8
 
@@ -68,14 +59,15 @@ class MessageView:
     def __init__(self, message_type: Any, fields: Collection[str] | None = None) -> None:
         self._name = message_type.__name__
         self._view = type(self._name, (SimpleNamespace,), {})
-        names = list(message_type.get_fields_and_field_types())
+        known = cdr.fields(message_type)
+        names = [name for name, _, _ in known]
         unknown = set(fields or ()) - set(names)
         if unknown:
             raise TypeError(f'{self._name} has no {sorted(unknown)}')
         last = len(names) if fields is None else 1 + max(names.index(name) for name in fields)
         self._steps = [
-            (name, fields is None or name in fields, _take(f'{self._name}.{name}', kind))
-            for name, kind in list(zip(names, message_type.SLOT_TYPES, strict=True))[:last]
+            (name, fields is None or name in fields, _take(several, content))
+            for name, several, content in known[:last]
         ]
 
     def read(self, data: bytes) -> Any:
@@ -88,7 +80,7 @@ class MessageView:
         CdrError
             If the data are no such little-endian message; names the field.
         """
-        if len(data) < HEAD or data[1] != _LITTLE_ENDIAN:
+        if len(data) < HEAD or data[1] != LITTLE_ENDIAN_HEAD[1]:
             raise CdrError(f'{self._name}: {len(data)} bytes are no little-endian message')
         # Without the head doubles lie where the processor wants them.
         return self.read_at(data[HEAD:], 0)[0]
@@ -106,22 +98,13 @@ class MessageView:
         return self._view(**values), at
 
 
-def _take(field: str, kind: Any) -> Take:
-    """Return what reads a field of this kind."""
-    if isinstance(kind, BasicType) and kind.typename in _NUMBERS:
-        return _number(struct.Struct('<' + _NUMBERS[kind.typename]))
-    if isinstance(kind, UnboundedString):
-        return _text
-    if isinstance(kind, NamespacedType):
-        module = importlib.import_module('.'.join(kind.namespaces))
-        return MessageView(getattr(module, kind.name)).read_at
-    if isinstance(kind, UnboundedSequence):
-        content = kind.value_type
-        if isinstance(content, UnboundedString):
-            return _Names()
-        if isinstance(content, BasicType) and content.typename in _NUMBERS:
-            return _numbers(np.dtype('<' + _NUMBERS[content.typename]))
-    raise TypeError(f'{field}: a {kind} cannot be viewed')
+def _take(several: bool, content: Any) -> Take:
+    """Return what reads a field of such content."""
+    if content is str:
+        return _Names() if several else _text
+    if not isinstance(content, str):
+        return MessageView(content).read_at
+    return _numbers(np.dtype('<' + content)) if several else _number(struct.Struct('<' + content))
 
 
 def _number(kind: struct.Struct) -> Take:
@@ -151,7 +134,7 @@ def _numbers(kind: np.dtype[Any]) -> Take:
 
 def _count(octets: bytes, at: int) -> tuple[int, int]:
     at += -at % 4
-    return _COUNT.unpack_from(octets, at)[0], at + 4
+    return COUNT.unpack_from(octets, at)[0], at + 4
 
 
 def _text(octets: bytes, at: int) -> tuple[str, int]:

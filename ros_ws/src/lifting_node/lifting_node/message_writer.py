@@ -9,28 +9,20 @@ seen, and arrays are copied as they lie.
 
 from __future__ import annotations
 
-import importlib
 import struct
 from array import array
 from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 import numpy as np
-from rosidl_parser.definition import (
-    BasicType,
-    NamespacedType,
-    UnboundedSequence,
-    UnboundedString,
-)
+
+from lifting_node.cdr import COUNT, LITTLE_ENDIAN_HEAD, fields
 
 #: Adds a value to the bytes behind the head.
 Put = Callable[[bytearray, Any], None]
 #: Gives a value in the form that a message object has it in.
 Make = Callable[[Any], Any]
 
-_HEAD: Final = b'\0\1\0\0'
-_NUMBERS: Final = {'double': 'd', 'uint8': 'B', 'uint16': 'H', 'uint32': 'I', 'int32': 'i'}
-_COUNT: Final = struct.Struct('<I')
 #: Bytes that fill up to the next place of two, four or eight.
 _FILL: Final = tuple(bytes(size) for size in range(8))
 
@@ -54,10 +46,8 @@ class MessageWriter:
 
     def __init__(self, message_type: Any) -> None:
         self._type = message_type
-        names = message_type.get_fields_and_field_types()
         forms = [
-            (name, *_form(f'{message_type.__name__}.{name}', kind))
-            for name, kind in zip(names, message_type.SLOT_TYPES, strict=True)
+            (name, *_form(several, content)) for name, several, content in fields(message_type)
         ]
         self._puts = [(name, put) for name, put, _ in forms]
         self._makes = [(name, make) for name, _, make in forms]
@@ -72,7 +62,7 @@ class MessageWriter:
         """
         out = bytearray()
         self.put(out, values)
-        return _HEAD + out
+        return LITTLE_ENDIAN_HEAD + out
 
     def put(self, out: bytearray, values: Mapping[str, Any]) -> None:
         """Add the message to the bytes of one that it is a part of; raises as `write`."""
@@ -84,24 +74,16 @@ class MessageWriter:
         return self._type(**{name: make(values[name]) for name, make in self._makes})
 
 
-def _form(field: str, kind: Any) -> tuple[Put, Make]:
-    """Return what writes a field of this kind, and what makes its value in a message object."""
-    if isinstance(kind, BasicType) and kind.typename in _NUMBERS:
-        number = float if kind.typename == 'double' else int
-        return _number(struct.Struct('<' + _NUMBERS[kind.typename])), number
-    if isinstance(kind, UnboundedString):
-        return _put_text, str
-    if isinstance(kind, NamespacedType):
-        module = importlib.import_module('.'.join(kind.namespaces))
-        part = MessageWriter(getattr(module, kind.name))
+def _form(several: bool, content: Any) -> tuple[Put, Make]:
+    """Return what writes a field of such content, and what makes its value in a message object."""
+    if content is str:
+        return (_Names(), list) if several else (_put_text, str)
+    if not isinstance(content, str):
+        part = MessageWriter(content)
         return part.put, part.make
-    if isinstance(kind, UnboundedSequence):
-        content = kind.value_type
-        if isinstance(content, UnboundedString):
-            return _Names(), list
-        if isinstance(content, BasicType) and content.typename in _NUMBERS:
-            return _numbers(_NUMBERS[content.typename])
-    raise TypeError(f'{field}: a {kind} cannot be written')
+    if several:
+        return _numbers(content)
+    return _number(struct.Struct('<' + content)), float if content == 'd' else int
 
 
 def _number(kind: struct.Struct) -> Put:
@@ -121,7 +103,7 @@ def _numbers(code: str) -> tuple[Put, Make]:
     def put(out: bytearray, value: Any) -> None:
         data = np.asarray(value, kind)
         out += _FILL[-len(out) % 4]
-        out += _COUNT.pack(data.size)
+        out += COUNT.pack(data.size)
         if data.size:
             out += _FILL[-len(out) % size]
             out += data.tobytes()
@@ -136,7 +118,7 @@ def _numbers(code: str) -> tuple[Put, Make]:
 def _put_text(out: bytearray, value: str) -> None:
     data = value.encode()
     out += _FILL[-len(out) % 4]
-    out += _COUNT.pack(len(data) + 1)
+    out += COUNT.pack(len(data) + 1)
     out += data
     out.append(0)
 
@@ -146,11 +128,11 @@ class _Names:
 
     def __init__(self) -> None:
         self._last: tuple[str, ...] = ()
-        self._bytes = _COUNT.pack(0)
+        self._bytes = COUNT.pack(0)
 
     def __call__(self, out: bytearray, value: tuple[str, ...]) -> None:
         if value is not self._last and value != self._last:
-            written = bytearray(_COUNT.pack(len(value)))
+            written = bytearray(COUNT.pack(len(value)))
             for text in value:
                 _put_text(written, text)
             self._last, self._bytes = value, bytes(written)
