@@ -45,12 +45,15 @@ from muscle_analyzer.lift_queue import LiftQueue, WaitingLift
 WAITING_LIFTS: Final = 100
 """Lifts kept until their person is known and the node is active."""
 
-LIFT_STEP: Final = 0.002
-"""Time [s] that whole lifts are worked on right after a live sample: over before the next one,
-also when that comes early."""
+LIFT_STEP: Final = 0.001
+"""Time [s] that whole lifts are worked on right after a live sample, or one step of them: over
+long before the next one, also when that comes early."""
 
 QUIET: Final = 0.02
 """Time [s] without a live sample after which whole lifts are worked on all the time."""
+
+QUIET_STEP: Final = 0.004
+"""Time [s] that they are worked on then before the node looks for messages again."""
 
 
 class MuscleAnalyzerNode(PipelineNode):
@@ -87,7 +90,7 @@ class MuscleAnalyzerNode(PipelineNode):
         )
         self._last_live = -math.inf
         self._turn = self.create_timer(
-            LIFT_STEP, self._work, clock=Clock(clock_type=ClockType.STEADY_TIME), autostart=False
+            QUIET_STEP, self._work, clock=Clock(clock_type=ClockType.STEADY_TIME), autostart=False
         )
         self._muscles = self.advertise(MuscleAnalysis, 'muscle_analysis', qos.FRAMES)
         self._spine = self.advertise(SpineLoad, 'spine_load', qos.FRAMES)
@@ -198,7 +201,7 @@ class MuscleAnalyzerNode(PipelineNode):
 
     def _work(self) -> None:
         if time.monotonic() - self._last_live > QUIET:
-            self._queue.work(LIFT_STEP)
+            self._queue.work(QUIET_STEP)
         if not self._queue:
             self._turn.cancel()
 
