@@ -42,11 +42,13 @@ class _Template:
     """
 
     def __init__(self, message: Any) -> None:
-        data = serialize_message(message)
-        # Without the head doubles lie where the processor wants them.
-        self._head, self._octets = data[:HEAD], bytearray(data[HEAD:])
+        data, reader = serialize_message(message), MessageView(type(message))
+        # Without the head doubles lie where the processor wants them. Behind an empty sequence
+        # at the end there is room that is not the message's: readers of recordings refuse it.
+        end = HEAD + reader.read_at(data[HEAD:], 0)[1]
+        self._head, self._octets = data[:HEAD], bytearray(data[HEAD:end])
         self._stamp = np.frombuffer(self._octets, '<i4', 2)
-        self.view = MessageView(type(message)).read_at(self._octets, 0)[0]
+        self.view = reader.read_at(self._octets, 0)[0]
 
     def last(self, count: int) -> npt.NDArray[np.float64]:
         """Return the last doubles of the message, as an array that can be written to."""
