@@ -202,7 +202,7 @@ class Skeleton:
             self.wrenches(external), gravity)
 
     def body_motion(self, time: npt.ArrayLike, q: npt.ArrayLike, qd: npt.ArrayLike,
-                    qdd: npt.ArrayLike, places: tuple[Array, Array] | None = None,
+                    qdd: npt.ArrayLike, *, places: tuple[Array, Array] | None = None,
                     **forces: Any) -> BodyMotion:
         """Motion block of coordinates (n, n_q) and their rates.
 

@@ -101,7 +101,7 @@ class LiveMotion:
             check = self._status.weigh(stamp, vertical, need, held, self._rate)
             if check is not None:
                 notices.append(Notice(str(check), check.ok))
-        motion = self._skeleton.body_motion(time, q, qd, qdd, places, **forces)
+        motion = self._skeleton.body_motion(time, q, qd, qdd, places=places, **forces)
         status, message = self._status.judge(stamp, solution, ' and '.join(silent))
         return TrackedFrame(motion, solution, status, message, self.delay), notices
 

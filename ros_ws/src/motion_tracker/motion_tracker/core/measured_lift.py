@@ -128,7 +128,7 @@ class LiftBuilder:
             forces['hand_force'] = estimator.estimate(missing, places[0][:, _HANDS], *box, support,
                                                       None)
         yield None
-        motion = self._skeleton.body_motion(times, q, qd, qdd, places, **forces)
+        motion = self._skeleton.body_motion(times, q, qd, qdd, places=places, **forces)
         rms, largest = self._residuals(times, records, stamps, rate)
         yield None
         report = self._report(records, inside, status, bridged, silent, doubt)
