@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Compiled step of the causal filters: samples one after the other, channels side by side."""
+"""Compiled steps of the causal filters, and rows between those of a stream."""
 
 import numba
 import numpy as np
@@ -36,3 +36,12 @@ def run(a: Array, b: Array, d: Array, scale: Array, state: Array, samples: Array
                 after[i, channel] = value
         state[:] = after
     return -1
+
+
+@numba.njit(cache=True)
+def blended(rows: Array, after: int, share: float) -> Array:
+    """Row (channels,) at the share of the way from the row before ``after`` to that."""
+    row = np.empty(rows.shape[1])
+    for channel in range(rows.shape[1]):
+        row[channel] = (1.0 - share) * rows[after - 1, channel] + share * rows[after, channel]
+    return row

@@ -16,10 +16,11 @@ from human_model.motion import POINTS
 from human_model.skeleton import Skeleton
 from motion_tracker.core.dynamics import needed_force
 from motion_tracker.core.filters import CausalFilter
-from motion_tracker.core.force_plates import SIDES, PlateGeometry, ground_reaction
+from motion_tracker.core.force_plates import SIDES, PlateGeometry
 from motion_tracker.core.hand_force import HandForceEstimator
 from motion_tracker.core.ik_types import IKSolution
 from motion_tracker.core.live_status import LiveStatus
+from motion_tracker.core.plate_kernel import feet
 from motion_tracker.core.streams import SampledStream
 from motion_tracker.core.tracked import Notice, TrackedFrame, TrackerSettings
 
@@ -55,7 +56,9 @@ class LiveMotion:
         self._skeleton = skeleton
         self._rate = rate
         self._settings = settings
-        self._plates = [plates[name] for name in SIDES]
+        self._rotation = np.array([plates[name].rotation for name in SIDES])
+        self._origin = np.array([plates[name].origin for name in SIDES])
+        self._surface = np.array([plates[name].surface_height for name in SIDES])
         self._wrenches = [wrenches[name] for name in SIDES]
         self._hand_force = hand_force
         self._status = status
@@ -132,17 +135,19 @@ class LiveMotion:
 
     def _ground(self, time: float) -> tuple[dict[str, Array], list[str]]:
         """Ground reaction (1, 2, 3) if all plates have samples; else those that have none."""
-        force, cop, free = np.empty((1, 2, 3)), np.empty((1, 2, 3)), np.empty((1, 2, 3))
+        wrench = np.empty((len(SIDES), 6))
         silent = []
         for side, stream in enumerate(self._wrenches):
             row = stream.filtered_at(time)
             if row is None:
                 silent.append(f'the {SIDES[side]} plate')
-                continue
-            foot = ground_reaction(row[:3], row[3:], self._plates[side],
-                                   self._settings.force_threshold)
-            force[:, side], cop[:, side], free[:, side] = foot.force, foot.cop, foot.free_moment
-        return ({} if silent else {'ground_force': force, 'cop': cop, 'free_moment': free}), silent
+            else:
+                wrench[side] = row
+        if silent:
+            return {}, silent
+        force, cop, free = feet(wrench, self._rotation, self._origin, self._surface,
+                                self._settings.force_threshold)
+        return {'ground_force': force, 'cop': cop, 'free_moment': free}, silent
 
     def _held(self, hands: Array, box: Array | None, lifting: bool) -> float | None:
         """Mass in the hands [kg]; None while it is not known."""

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Compiled reaction of the ground on one foot, the same for a live sample and for a whole lift."""
+"""Compiled reaction of the ground on feet, the same for a live sample and for a whole lift."""
 
 import numba
 import numpy as np
@@ -11,6 +11,29 @@ BoolArray = npt.NDArray[np.bool_]
 
 
 @numba.njit(cache=True)
+def _foot(force: Array, moment: Array, rotation: Array, origin: Array, surface: float,
+          threshold: float, total: Array, cop: Array, free_moment: Array) -> bool:
+    """Write force, centre of pressure and free moment of one foot (3,); whether it is loaded."""
+    f, m = np.zeros(3), np.zeros(3)
+    for i in range(3):
+        for j in range(3):
+            f[i] += rotation[i, j] * force[j]
+            m[i] += rotation[i, j] * moment[j]
+    total[:] = 0.0
+    cop[:] = np.nan
+    free_moment[:] = 0.0
+    if not f[2] > threshold:
+        return False
+    height = surface - origin[2]
+    x = (height * f[0] - m[1]) / f[2]
+    y = (m[0] + height * f[1]) / f[2]
+    total[:] = f
+    cop[0], cop[1], cop[2] = x + origin[0], y + origin[1], surface
+    free_moment[2] = m[2] - x * f[1] + y * f[0]
+    return True
+
+
+@numba.njit(cache=True)
 def reaction(force: Array, moment: Array, rotation: Array, origin: Array, surface: float,
              threshold: float) -> tuple[Array, Array, Array, BoolArray]:
     """Force, centre of pressure and free moment (n, 3) in the world, and whether loaded (n,).
@@ -18,23 +41,25 @@ def reaction(force: Array, moment: Array, rotation: Array, origin: Array, surfac
     The arguments, the results and the equations are those of `force_plates.ground_reaction`.
     """
     n = force.shape[0]
-    total, free_moment = np.zeros((n, 3)), np.zeros((n, 3))
-    cop = np.full((n, 3), np.nan)
-    loaded = np.zeros(n, dtype=np.bool_)
-    f, m = np.empty(3), np.empty(3)
-    height = surface - origin[2]
+    total, cop, free_moment = np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3))
+    loaded = np.empty(n, dtype=np.bool_)
     for k in range(n):
-        for i in range(3):
-            f[i] = m[i] = 0.0
-            for j in range(3):
-                f[i] += rotation[i, j] * force[k, j]
-                m[i] += rotation[i, j] * moment[k, j]
-        loaded[k] = f[2] > threshold
-        if not loaded[k]:
-            continue
-        x = (height * f[0] - m[1]) / f[2]
-        y = (m[0] + height * f[1]) / f[2]
-        total[k] = f
-        cop[k, 0], cop[k, 1], cop[k, 2] = x + origin[0], y + origin[1], surface
-        free_moment[k, 2] = m[2] - x * f[1] + y * f[0]
+        loaded[k] = _foot(force[k], moment[k], rotation, origin, surface, threshold, total[k],
+                          cop[k], free_moment[k])
     return total, cop, free_moment, loaded
+
+
+@numba.njit(cache=True)
+def feet(wrench: Array, rotation: Array, origin: Array, surface: Array, threshold: float,
+         ) -> tuple[Array, Array, Array]:
+    """Force, centre of pressure and free moment (1, feet, 3) in the world, of one instant.
+
+    As `reaction`, of feet on a plate each: wrenches (feet, 6), rotations (feet, 3, 3), origins
+    (feet, 3) and heights of the surfaces (feet,).
+    """
+    shape = (1, wrench.shape[0], 3)
+    total, cop, free_moment = np.empty(shape), np.empty(shape), np.empty(shape)
+    for k in range(wrench.shape[0]):
+        _foot(wrench[k, :3], wrench[k, 3:], rotation[k], origin[k], surface[k], threshold,
+              total[0, k], cop[0, k], free_moment[0, k])
+    return total, cop, free_moment

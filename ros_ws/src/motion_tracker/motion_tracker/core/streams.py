@@ -10,6 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from motion_tracker.core import filter_kernel
 from motion_tracker.core.errors import TrackerError
 from motion_tracker.core.filters import CausalFilter, zero_phase
 
@@ -231,8 +232,7 @@ class SampledStream:
         if after == 0 or b - stamps[after - 1] > self._longest_gap():
             return None
         a = stamps[after - 1]
-        share = (time - a) / (b - a)
-        row: Array = (1.0 - share) * rows[after - 1] + share * rows[after]
+        row: Array = filter_kernel.blended(rows, after, (time - a) / (b - a))
         return row
 
 

@@ -4,6 +4,7 @@
 
 import numpy as np
 
+from motion_tracker.core.force_plates import PlateGeometry, ground_reaction
 from motion_tracker.core.lift_events import detect_lifts
 from motion_tracker.core.marker_set import REFERENCE_SUBJECT, load_marker_set
 from motion_tracker.core.tracker import MotionTracker
@@ -26,5 +27,7 @@ def warm_up() -> None:
         tracker.push_box(stamp, (0.5, 0.0, 0.15))
         tracker.push_markers(stamp, tracker.model.names, positions)
     tracker.flush()
+    # What comes with a lift.
+    ground_reaction(np.zeros((2, 3)), np.zeros((2, 3)), PlateGeometry('plate'), 20.0)
     times = np.arange(100) / 100.0
     detect_lifts(times, 0.15 + np.clip(times - 0.5, 0.0, 0.3))
