@@ -24,17 +24,31 @@ def normal_equations(jacobian: Array, residual: Array) -> tuple[Array, Array]:
     """
     n = jacobian.shape[1]
     normal, gradient = np.zeros((n, n)), np.zeros(n)
-    for first in range(0, jacobian.shape[0], 3):
-        jx, jy, jz = jacobian[first], jacobian[first + 1], jacobian[first + 2]
-        rx, ry, rz = residual[first], residual[first + 1], residual[first + 2]
+    for row in range(0, jacobian.shape[0], 3):
+        rx, ry, rz = residual[row], residual[row + 1], residual[row + 2]
         for i in range(n):
-            x, y, z = jx[i], jy[i], jz[i]
+            x, y, z = jacobian[row, i], jacobian[row + 1, i], jacobian[row + 2, i]
             if x != 0.0 or y != 0.0 or z != 0.0:
                 gradient[i] += x * rx + y * ry + z * rz
-                row = normal[i]
-                for j in range(n):
-                    row[j] += x * jx[j] + y * jy[j] + z * jz[j]
+                for j in range(i + 1):
+                    normal[i, j] += (
+                        x * jacobian[row, j] + y * jacobian[row + 1, j] + z * jacobian[row + 2, j]
+                    )
+    for i in range(n):
+        for j in range(i):
+            normal[j, i] = normal[i, j]
     return normal, gradient
+
+
+@njit(cache=True, error_model='numpy')
+def transposed_times(matrix: Array, vector: Array) -> Array:
+    """Return A^T v (n,) of a matrix (m, n) and a vector (m,)."""
+    out = np.zeros(matrix.shape[1])
+    for row in range(matrix.shape[0]):
+        factor = vector[row]
+        for k in range(out.size):
+            out[k] += factor * matrix[row, k]
+    return out
 
 
 @njit(cache=True, error_model='numpy')

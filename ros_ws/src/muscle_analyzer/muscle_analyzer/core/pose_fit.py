@@ -32,6 +32,7 @@ from muscle_analyzer.core.normal_equations import (
     normal_equations,
     solution,
     solve_factorised,
+    transposed_times,
 )
 
 Array = NDArray[np.float64]
@@ -238,8 +239,13 @@ def _bounded_step(
 
 @njit(cache=True)
 def _cost(targets: Targets, residual: Array, q: Array) -> float:
-    pull = targets.reference_weight * (q - targets.reference)
-    return float(0.5 * (np.dot(residual, residual) + np.dot(pull, pull)))
+    total = 0.0
+    for i in range(residual.size):
+        total += residual[i] * residual[i]
+    for k in range(q.size):
+        pull = targets.reference_weight[k] * (q[k] - targets.reference[k])
+        total += pull * pull
+    return 0.5 * total
 
 
 @njit(cache=True)
@@ -356,10 +362,11 @@ def map_rates(
     jacobian = misfit_jacobian(tree, targets, state)
     wanted = np.empty(3 * (n_p + n_f))
     for i in range(n_p):
-        wanted[3 * i : 3 * i + 3] = targets.point_weight[i] * velocity.point[i]
+        for j in range(3):
+            wanted[3 * i + j] = targets.point_weight[i] * velocity.point[i, j]
     for i in range(n_f):
-        at = 3 * (n_p + i)
-        wanted[at : at + 3] = targets.frame_weight[i] * velocity.frame[i]
+        for j in range(3):
+            wanted[3 * (n_p + i) + j] = targets.frame_weight[i] * velocity.frame[i, j]
     normal, right = normal_equations(jacobian, wanted)
     damping = _SMALLEST_DAMPING * np.trace(normal) / n_q
     pull = targets.reference_weight**2
@@ -373,10 +380,13 @@ def map_rates(
     moving = forward_kinematics(tree, q, rate, np.zeros(n_q))
     for i in range(n_p):
         bias = point_acceleration(moving, targets.point_body[i], targets.point_local[i])
-        wanted[3 * i : 3 * i + 3] = targets.point_weight[i] * (acceleration.point[i] - bias)
+        for j in range(3):
+            left = acceleration.point[i, j] - bias[j]
+            wanted[3 * i + j] = targets.point_weight[i] * left
     for i in range(n_f):
-        at = 3 * (n_p + i)
         bias = moving.angular_acceleration[targets.frame_body[i]]
-        wanted[at : at + 3] = targets.frame_weight[i] * (acceleration.frame[i] - bias)
-    right = jacobian.T @ wanted + pull * acceleration.reference
+        for j in range(3):
+            left = acceleration.frame[i, j] - bias[j]
+            wanted[3 * (n_p + i) + j] = targets.frame_weight[i] * left
+    right = transposed_times(jacobian, wanted) + pull * acceleration.reference
     return rate, solution(factor, solved, index, right)

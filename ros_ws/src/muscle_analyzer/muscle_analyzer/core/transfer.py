@@ -28,12 +28,9 @@ from muscle_analyzer.core.body_points import upright_coordinates
 from muscle_analyzer.core.exceptions import TransferError
 from muscle_analyzer.core.held import hold
 from muscle_analyzer.core.pose_fit import Targets
+from muscle_analyzer.core.skeleton_frames import SkeletonMotion
 from muscle_analyzer.core.subject_model import SubjectModel
-from muscle_analyzer.core.transfer_frames import (
-    SkeletonMotion,
-    TransferSetup,
-    transfer_frames,
-)
+from muscle_analyzer.core.transfer_frames import TransferSetup, transfer_frames
 
 Array = NDArray[np.float64]
 
@@ -152,12 +149,15 @@ class MotionTransfer:
         }
         bounded = fitted & np.array([clamped[name] for name in names])
         which_points = _positions(points.names, POINTS)
+        segment = skeleton.point_segment[which_points]
         self._setup = TransferSetup(
             tree=model.tree,
             skeleton=skeleton.tree,
-            segment=skeleton.point_segment[which_points],
-            local=np.ascontiguousarray(skeleton.point_local[which_points]),
-            frame_segment=skeleton.frame_segment[_positions(points.frame_names, FRAMES)],
+            point_body=skeleton.tree.segment_body[segment],
+            local=skeleton.tree.segment_offset[segment] + skeleton.point_local[which_points],
+            frame_body=skeleton.tree.segment_body[
+                skeleton.frame_segment[_positions(points.frame_names, FRAMES)]
+            ],
             targets=Targets(
                 point_body=points.body,
                 point_local=points.local,

@@ -13,37 +13,20 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from human_model.compiled import body_motion
 from human_model.tree import TreeArrays
 from muscle_analyzer.core.held import Held
-from muscle_analyzer.core.kinematics import cross, turned
 from muscle_analyzer.core.multibody import Tree
 from muscle_analyzer.core.pose_fit import Rates, Targets, fit_pose, map_rates
+from muscle_analyzer.core.skeleton_frames import (
+    SkeletonMotion,
+    SkeletonState,
+    set_frame,
+    skeleton_state,
+)
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
-
-
-class SkeletonState(NamedTuple):
-    """A skeleton at its coordinates; velocities and accelerations of its points.
-
-    Attributes
-    ----------
-    point, velocity, acceleration : (n_p, 3) arrays
-        m, m/s, m/s^2.
-    rotation : (n_f, 3, 3) array
-        World <- frame.
-    omega, alpha : (n_f, 3) arrays
-        Angular, rad/s and rad/s^2.
-    """
-
-    point: Array
-    velocity: Array
-    acceleration: Array
-    rotation: Array
-    omega: Array
-    alpha: Array
 
 
 class TransferSetup(NamedTuple):
@@ -54,10 +37,10 @@ class TransferSetup(NamedTuple):
     tree : Tree
         Of the musculoskeletal model.
     skeleton : TreeArrays
-    segment, local : (n_p,) int and (n_p, 3) arrays
-        The points on the skeleton's segments, m.
-    frame_segment : (n_f,) int array
-        Segments of the frames.
+    point_body, local : (n_p,) int and (n_p, 3) arrays
+        The points on the skeleton's bodies, m.
+    frame_body : (n_f,) int array
+        Bodies of the frames.
     targets : Targets
         With everything that is the same in all frames.
     upright : (n_f, 3, 3) array
@@ -83,9 +66,9 @@ class TransferSetup(NamedTuple):
 
     tree: Tree
     skeleton: TreeArrays
-    segment: IntArray
+    point_body: IntArray
     local: Array
-    frame_segment: IntArray
+    frame_body: IntArray
     targets: Targets
     upright: Array
     upright_q: Array
@@ -122,30 +105,6 @@ class TransferredFrames(NamedTuple):
     off: Array
 
 
-class SkeletonMotion(NamedTuple):
-    """Frames of a skeleton's motion; see `human_model.motion.BodyMotion`.
-
-    Attributes
-    ----------
-    position, velocity, acceleration : (n, n_s) arrays
-        Coordinates of the skeleton in rad or m, rates, accelerations.
-    points : (n, n_all, 3) array
-        REP-103 axes, m.
-    frames : (n, n_frames, 4) array
-        Quaternions xyzw.
-    point_column, frame_column : (n_p,), (n_f,) int arrays
-        Where the points and frames of the model are among them.
-    """
-
-    position: Array
-    velocity: Array
-    acceleration: Array
-    points: Array
-    frames: Array
-    point_column: IntArray
-    frame_column: IntArray
-
-
 @njit(cache=True)
 def _no_frames(n: int, n_q: int, n_p: int, n_f: int) -> TransferredFrames:
     """Give room for n frames."""
@@ -160,60 +119,6 @@ def _no_frames(n: int, n_q: int, n_p: int, n_f: int) -> TransferredFrames:
         np.empty((n, n_q), np.bool_),
         np.empty((n, n_p)),
     )
-
-
-@njit(cache=True)
-def _set_frame(motion: SkeletonMotion, k: int, place: Array, frames: Array) -> None:
-    """Write places (n_p, 3) and rotation matrices (n_f, 3, 3) of a frame of the motion."""
-    for i in range(place.shape[0]):
-        for j in range(3):
-            place[i, j] = motion.points[k, motion.point_column[i], j]
-    for f in range(frames.shape[0]):
-        q = motion.frames[k, motion.frame_column[f]]
-        size = np.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
-        x, y, z, w = q[0] / size, q[1] / size, q[2] / size, q[3] / size
-        m = frames[f]
-        m[0, 0] = 1 - 2 * (y * y + z * z)
-        m[0, 1] = 2 * (x * y - z * w)
-        m[0, 2] = 2 * (x * z + y * w)
-        m[1, 0] = 2 * (x * y + z * w)
-        m[1, 1] = 1 - 2 * (x * x + z * z)
-        m[1, 2] = 2 * (y * z - x * w)
-        m[2, 0] = 2 * (x * z - y * w)
-        m[2, 1] = 2 * (y * z + x * w)
-        m[2, 2] = 1 - 2 * (x * x + y * y)
-
-
-@njit(cache=True)
-def _skeleton_state(setup: TransferSetup, q: Array, qd: Array, qdd: Array) -> SkeletonState:
-    tree = setup.skeleton
-    rotation, origin, _, omega, alpha, velocity, acceleration = body_motion(tree, q, qd, qdd)
-    n_p = setup.segment.size
-    n_f = setup.frame_segment.size
-    x = np.empty((n_p, 3))
-    v = np.empty((n_p, 3))
-    a = np.empty((n_p, 3))
-    r = np.empty((n_f, 3, 3))
-    w = np.empty((n_f, 3))
-    al = np.empty((n_f, 3))
-    for i in range(n_p):
-        s = setup.segment[i]
-        b = tree.segment_body[s]
-        arm = turned(rotation[b], tree.segment_offset[s] + setup.local[i])
-        swing = cross(omega[b], arm)
-        tangent, centripetal = cross(alpha[b], arm), cross(omega[b], swing)
-        for j in range(3):
-            x[i, j] = origin[b, j] + arm[j]
-            v[i, j] = velocity[b, j] + swing[j]
-            a[i, j] = acceleration[b, j] + tangent[j] + centripetal[j]
-    for i in range(n_f):
-        b = tree.segment_body[setup.frame_segment[i]]
-        for j in range(3):
-            w[i, j] = omega[b, j]
-            al[i, j] = alpha[b, j]
-            for k in range(3):
-                r[i, j, k] = rotation[b, j, k]
-    return SkeletonState(x, v, a, r, w, al)
 
 
 @njit(cache=True)
@@ -361,8 +266,11 @@ def transfer_frames(
     for k in range(len(motion.position)):
         position, velocity = motion.position[k], motion.velocity[k]
         acceleration = motion.acceleration[k]
-        own = _skeleton_state(setup, position, velocity, acceleration)
-        _set_frame(motion, k, place, frames)
+        own = skeleton_state(
+            setup.skeleton, setup.point_body, setup.local, setup.frame_body, position, velocity,
+            acceleration,
+        )  # fmt: skip
+        set_frame(motion, k, place, frames)
         heading = _heading(setup, own, frames)
         _distances(setup, own, heading, place, out.off[k])
         for i in range(n_p):
