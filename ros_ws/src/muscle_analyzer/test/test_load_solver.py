@@ -116,3 +116,15 @@ def test_numbers_that_are_not_finite_name_their_coordinate(lifting_multibody, mo
     external[3, lifting_multibody.body_index('hand_r'), 0] = np.nan
     with pytest.raises(InputArrayError, match=r'coordinate \w+: torque nan'):
         solver.solve_block(*motion[:3], external)
+
+
+def test_numbers_that_are_not_finite_leave_nothing_behind(lifting_multibody, motion):
+    used, fresh = (LoadSolver(lifting_multibody, MuscleAnalyzerOptions()) for _ in range(2))
+    q, *others = (array[1] for array in motion)
+    with pytest.raises(InputArrayError):
+        used.solve(np.full_like(q, np.nan), *others)
+    used.reset()
+    after, expected = used.solve(q, *others), fresh.solve(q, *others)
+    assert np.array_equal(after.force, expected.force)
+    assert np.array_equal(after.joints.moment, expected.joints.moment)
+    assert np.array_equal(after.residual, expected.residual)

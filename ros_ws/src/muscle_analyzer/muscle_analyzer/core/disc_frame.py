@@ -39,6 +39,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from muscle_analyzer.core.exceptions import InputArrayError, OptionError
+from muscle_analyzer.core.kernel import kernel
 
 Array = NDArray[np.float64]
 
@@ -172,38 +173,44 @@ def sacral_angle(trunk_flexion: float, knee_angle: float) -> float:
 @njit(cache=True)
 def leant_forward(frame: Array, angle: float) -> Array:
     """Return a frame (3, 3), columns forward, left, up, leant forward about its left axis, rad."""
-    c, s = np.cos(angle), np.sin(angle)
-    leant = np.empty((3, 3))
-    for i in range(3):
-        leant[i, 0] = frame[i, 0] * c - frame[i, 2] * s
-        leant[i, 1] = frame[i, 1]
-        leant[i, 2] = frame[i, 0] * s + frame[i, 2] * c
+    leant = frame.copy()
+    _lean_forward(leant, angle)
     return leant
 
 
-@njit(cache=True)
-def disc_rotation_of(
-    setting: DiscSetting, vertebra: Array, trunk: Array, knee_flexion: float
-) -> Array:
-    """Return the rotation of `disc_rotation` for the compiled functions."""
-    upright = np.empty((3, 3))
+@kernel
+def _lean_forward(frame: Array, angle: float) -> None:
+    """Turn a frame into that of `leant_forward`."""
+    c, s = np.cos(angle), np.sin(angle)
+    for i in range(3):
+        forward, up = frame[i, 0], frame[i, 2]
+        frame[i, 0] = forward * c - up * s
+        frame[i, 2] = forward * s + up * c
+
+
+@kernel
+def turn_disc(
+    setting: DiscSetting, vertebra: Array, trunk: Array, knee_flexion: float, rotation: Array
+) -> None:
+    """Fill the rotation (3, 3) that `disc_rotation` gives."""
     if not setting.by_posture:
         for i in range(3):
             # Forward, left, up out of forward, up, right.
-            upright[i, 0] = vertebra[i, 0]
-            upright[i, 1] = -vertebra[i, 2]
-            upright[i, 2] = vertebra[i, 1]
-        return leant_forward(upright, setting.tilt)
+            rotation[i, 0] = vertebra[i, 0]
+            rotation[i, 1] = -vertebra[i, 2]
+            rotation[i, 2] = vertebra[i, 1]
+        _lean_forward(rotation, setting.tilt)
+        return
     # In the sagittal plane of the vertebra: its axis to the left, made level.
     x, z = -vertebra[0, 2], -vertebra[2, 2]
     size = np.sqrt(x * x + z * z)
     x, z = x / size, z / size
-    upright[0, 0], upright[1, 0], upright[2, 0] = -z, 0.0, x
-    upright[0, 1], upright[1, 1], upright[2, 1] = x, 0.0, z
-    upright[0, 2], upright[1, 2], upright[2, 2] = 0.0, 1.0, 0.0
+    rotation[0, 0], rotation[1, 0], rotation[2, 0] = -z, 0.0, x
+    rotation[0, 1], rotation[1, 1], rotation[2, 1] = x, 0.0, z
+    rotation[0, 2], rotation[1, 2], rotation[2, 2] = 0.0, 1.0, 0.0
     lean = np.degrees(np.arctan2(trunk[2, 1] * x - trunk[0, 1] * z, trunk[1, 1]))
     knee = 180.0 - np.degrees(knee_flexion)
-    return leant_forward(upright, np.radians(_sacral_angle(setting.regression, lean, knee)))
+    _lean_forward(rotation, np.radians(_sacral_angle(setting.regression, lean, knee)))
 
 
 def disc_rotation(
@@ -222,9 +229,8 @@ def disc_rotation(
         Mean of both knees, rad; only `chaffin` looks at it.
     """
     vertebra, trunk = (np.ascontiguousarray(r, np.float64) for r in (vertebra, trunk))
-    rotation: Array = disc_rotation_of(
-        disc_setting(option), vertebra, trunk, float(knee_flexion)
-    )
+    rotation = np.empty((3, 3))
+    turn_disc(disc_setting(option), vertebra, trunk, float(knee_flexion), rotation)
     return rotation
 
 

@@ -14,7 +14,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from muscle_analyzer.core.kinematics import BodyState, cross, cross3
+from muscle_analyzer.core.kernel import kernel
+from muscle_analyzer.core.kinematics import BodyState, cross3
 from muscle_analyzer.core.multibody import Tree
 
 Array = NDArray[np.float64]
@@ -78,13 +79,10 @@ def _into_body(m, x, y, z):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(cache=True)
-def inertial_wrenches(tree: Tree, state: BodyState) -> Array:
-    """Return the wrenches (n_b, 6) that give every body its acceleration, weight taken off."""
-    n_b = tree.parent.size
-    out = np.zeros((n_b, 6))
-    # Scalars throughout: a small array per body and vector costs more than the arithmetic.
-    for b in range(1, n_b):
+@kernel
+def _inertial_wrenches(tree: Tree, state: BodyState, out: Array) -> None:
+    """Fill the wrenches (n_b, 6) that give every body its acceleration, weight taken off."""
+    for b in range(1, tree.parent.size):
         rot = state.rotation[b]
         c, tensor, mass = tree.mass_center[b], tree.inertia[b], tree.mass[b]
         wx, wy, wz = state.angular_velocity[b]
@@ -111,17 +109,22 @@ def inertial_wrenches(tree: Tree, state: BodyState) -> Array:
         )  # fmt: skip
         out[b, 0], out[b, 1], out[b, 2] = mx + px, my + py, mz + pz
         out[b, 3], out[b, 4], out[b, 5] = fx, fy, fz
-    return out
 
 
 @njit(cache=True)
 def subtree_sum(tree: Tree, wrenches: Array) -> Array:
     """Return for every body the sum (n_b, 6) of the wrenches of it and all that it carries."""
     total = wrenches.copy()
-    for b in range(tree.parent.size - 1, 0, -1):
-        for i in range(6):
-            total[tree.parent[b], i] += total[b, i]
+    carry(tree.parent, total)
     return total
+
+
+@kernel
+def carry(parent: NDArray[np.int64], wrenches: Array) -> None:
+    """Add to the wrenches (n_b, 6) on each body those on all that it carries, in place."""
+    for b in range(parent.size - 1, 0, -1):
+        for i in range(6):
+            wrenches[parent[b], i] += wrenches[b, i]
 
 
 @njit(cache=True)
@@ -136,9 +139,36 @@ def inverse_dynamics(tree: Tree, state: BodyState, external: Array) -> InverseDy
     external : (n_b, 6) array
         Wrenches on the bodies from outside (ground, box), without weight; see `add_force`.
     """
-    joint_wrench = subtree_sum(tree, inertial_wrenches(tree, state) - external)
-    tree_force = np.zeros(tree.independent.size)
-    force = np.zeros(tree.n_independent[0])
+    found = room_for_dynamics(tree)
+    balance_motion(tree, state, external, found)
+    return found
+
+
+@njit(cache=True)
+def room_for_dynamics(tree: Tree) -> InverseDynamics:
+    """Return room for `balance_motion`."""
+    return InverseDynamics(
+        np.zeros((tree.parent.size, 6)),
+        np.zeros(tree.independent.size),
+        np.zeros(tree.n_independent[0]),
+    )
+
+
+@kernel
+def balance_motion(
+    tree: Tree, state: BodyState, external: Array, out: InverseDynamics
+) -> None:
+    """Fill joint wrenches and generalised forces as `inverse_dynamics` gives them."""
+    joint_wrench, tree_force, force = out
+    for i in range(6):
+        joint_wrench[0, i] = 0.0
+    _inertial_wrenches(tree, state, joint_wrench)
+    for b in range(tree.parent.size):
+        for i in range(6):
+            joint_wrench[b, i] -= external[b, i]
+    carry(tree.parent, joint_wrench)
+    tree_force.fill(0.0)
+    force.fill(0.0)
     for b in range(1, tree.parent.size):
         for e in range(tree.first_motion[b], tree.first_motion[b + 1]):
             x = tree.motion_coordinate[e]
@@ -150,14 +180,19 @@ def inverse_dynamics(tree: Tree, state: BodyState, external: Array) -> InverseDy
             tree_force[x] += along * state.tree_gain[e]
             if tree.independent[x] >= 0:
                 force[tree.independent[x]] += along * state.gain[e]
-    return InverseDynamics(joint_wrench, tree_force, force)
 
 
 @njit(cache=True)
 def wrench_at(wrench: Array, point: Array) -> Array:
     """Return a wrench (6,) about the ground's origin as one about another point (3,), m."""
-    out = wrench.copy()
-    moved = cross(point, wrench[3:])
-    for i in range(3):
-        out[i] -= moved[i]
+    out = np.empty(6)
+    refer_wrench(wrench, point, out)
     return out
+
+
+@kernel
+def refer_wrench(wrench: Array, point: Array, out: Array) -> None:
+    """Fill the wrench (6,) that `wrench_at` gives."""
+    x, y, z = cross3(point[0], point[1], point[2], wrench[3], wrench[4], wrench[5])
+    out[0], out[1], out[2] = wrench[0] - x, wrench[1] - y, wrench[2] - z
+    out[3], out[4], out[5] = wrench[3], wrench[4], wrench[5]

@@ -25,7 +25,6 @@ from importlib.resources import files
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from muscle_analyzer.core.disc_frame import (
@@ -35,6 +34,7 @@ from muscle_analyzer.core.disc_frame import (
     leant_forward,
 )
 from muscle_analyzer.core.exceptions import OptionError
+from muscle_analyzer.core.kernel import kernel
 from muscle_analyzer.core.kinematics import cross3
 from muscle_analyzer.core.multibody import MultibodyModel
 
@@ -139,7 +139,7 @@ class JointFrames(NamedTuple):
     lumbosacral: int
 
 
-@njit(cache=True, error_model='numpy')
+@kernel
 def joint_loads(
     joints: JointFrames,
     reactions: Array,
@@ -154,24 +154,24 @@ def joint_loads(
 
     The others are those of `JointLoadFrames.loads`.
     """
-    frame = np.empty((3, 3))
     for j in range(joints.body.size):
         b, sign = joints.body[j], joints.sign[j]
-        for i in range(3):
-            for k in range(3):
-                frame[i, k] = lumbosacral[i, k]
-                if j != joints.lumbosacral:
-                    frame[i, k] = 0.0
-                    for m in range(3):
-                        frame[i, k] += rotations[b, i, m] * joints.frame[j, m, k]
         fx, fy, fz = sign * reactions[b, 3], sign * reactions[b, 4], sign * reactions[b, 5]
         mx, my, mz = cross3(centres[b, 0], centres[b, 1], centres[b, 2], fx, fy, fz)
         mx = sign * reactions[b, 0] - mx
         my = sign * reactions[b, 1] - my
         mz = sign * reactions[b, 2] - mz
         for k in range(3):
-            force[j, k] = frame[0, k] * fx + frame[1, k] * fy + frame[2, k] * fz
-            moment[j, k] = frame[0, k] * mx + frame[1, k] * my + frame[2, k] * mz
+            # Axis k of the joint's frame.
+            x, y, z = lumbosacral[0, k], lumbosacral[1, k], lumbosacral[2, k]
+            if j != joints.lumbosacral:
+                x, y, z = 0.0, 0.0, 0.0
+                for m in range(3):
+                    x += rotations[b, 0, m] * joints.frame[j, m, k]
+                    y += rotations[b, 1, m] * joints.frame[j, m, k]
+                    z += rotations[b, 2, m] * joints.frame[j, m, k]
+            force[j, k] = x * fx + y * fy + z * fz
+            moment[j, k] = x * mx + y * my + z * mz
 
 
 class JointLoadFrames:

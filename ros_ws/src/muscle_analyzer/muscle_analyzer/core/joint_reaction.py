@@ -19,7 +19,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from muscle_analyzer.core.inverse_dynamics import subtree_sum, wrench_at
+from muscle_analyzer.core.inverse_dynamics import carry, wrench_at
+from muscle_analyzer.core.kernel import kernel
 from muscle_analyzer.core.kinematics import BodyState
 from muscle_analyzer.core.multibody import Tree
 
@@ -57,7 +58,18 @@ def joint_reactions(tree: Tree, joint_wrench: Array, muscle_wrench: Array) -> Ar
     muscle_wrench : (n_b, 6) array
         What all muscles do to the bodies, see `muscle_paths.body_wrenches`.
     """
-    return joint_wrench - subtree_sum(tree, muscle_wrench)
+    reaction = muscle_wrench.copy()
+    react(tree, joint_wrench, reaction)
+    return reaction
+
+
+@kernel
+def react(tree: Tree, joint_wrench: Array, wrench: Array) -> None:
+    """Put the `joint_reactions` in place of what all muscles do to the bodies (n_b, 6)."""
+    carry(tree.parent, wrench)
+    for b in range(wrench.shape[0]):
+        for i in range(6):
+            wrench[b, i] = joint_wrench[b, i] - wrench[b, i]
 
 
 @njit(cache=True)

@@ -22,6 +22,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from muscle_analyzer.core.functions import evaluated
+from muscle_analyzer.core.kernel import kernel
 from muscle_analyzer.core.multibody import Tree
 
 Array = NDArray[np.float64]
@@ -73,6 +74,41 @@ class BodyState(NamedTuple):
     coordinate_gain: Array
 
 
+class KinematicsRoom(NamedTuple):
+    """What `move_bodies` writes to on its way.
+
+    Attributes
+    ----------
+    coordinates : CoordinateState
+        Its values and gains are those of the `BodyState` as well.
+    move : (n_e, 3) array
+        Angle or distance of each elementary motion with its time derivatives.
+    frame : (3, 3) array
+        Ground <- the frame that a joint has moved so far.
+    shift : (3, 3) array
+        Of that frame's origin from the parent's, with its time derivatives as rows.
+    """
+
+    coordinates: CoordinateState
+    move: Array
+    frame: Array
+    shift: Array
+
+
+@njit(cache=True)
+def room_for_bodies(tree: Tree) -> tuple[KinematicsRoom, BodyState]:
+    """Return room for `move_bodies` and for its result, full of zeros."""
+    n_b, n_e, n = tree.parent.size, tree.motion_turns.size, tree.independent.size
+    x = CoordinateState(np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n))
+    room = KinematicsRoom(x, np.zeros((n_e, 3)), np.zeros((3, 3)), np.zeros((3, 3)))
+    state = BodyState(
+        np.zeros((n_b, 3)), np.zeros((n_b, 3, 3)), np.zeros((n_b, 3)), np.zeros((n_b, 3)),
+        np.zeros((n_b, 3)), np.zeros((n_b, 3)), np.zeros((n_b, 3)), np.zeros((n_e, 6)),
+        np.zeros(n_e), np.zeros(n_e), x.value, x.gain,
+    )  # fmt: skip
+    return room, state
+
+
 @njit(cache=True, error_model='numpy')
 def coordinate_state(tree: Tree, q: Array, qd: Array, qdd: Array) -> CoordinateState:
     """Return all tree coordinates and their derivatives from the independent ones.
@@ -84,11 +120,21 @@ def coordinate_state(tree: Tree, q: Array, qd: Array, qdd: Array) -> CoordinateS
         Independent coordinates in rad or m, their rates and accelerations.
     """
     n = tree.independent.size
-    value, rate, acceleration, gain = np.empty(n), np.zeros(n), np.zeros(n), np.zeros(n)
+    x = CoordinateState(np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n))
+    _move_coordinates(tree, q, qd, qdd, x)
+    return x
+
+
+@kernel
+def _move_coordinates(
+    tree: Tree, q: Array, qd: Array, qdd: Array, out: CoordinateState
+) -> None:
+    """Fill a `coordinate_state`, zeros before."""
+    value, rate, acceleration, gain = out
     # Plain arrays: to hand a tuple of them to a function costs more than the function.
     first, lower, anchor, coefficient = tree.functions
     independent, number = tree.independent, tree.coupling_function
-    for i in range(n):
+    for i in range(independent.size):
         k = independent[i]
         x = q[k] if k >= 0 else 0.0
         f, f1, f2 = evaluated(first, lower, anchor, coefficient, number[i], x)
@@ -97,7 +143,6 @@ def coordinate_state(tree: Tree, q: Array, qd: Array, qdd: Array) -> CoordinateS
             gain[i] = f1
             rate[i] = f1 * qd[k]
             acceleration[i] = f1 * qdd[k] + f2 * qd[k] * qd[k]
-    return CoordinateState(value, rate, acceleration, gain)
 
 
 @njit(cache=True, inline='always')
@@ -125,7 +170,7 @@ def turned(rotation: Array, vector: Array) -> Array:
     return out
 
 
-@njit(cache=True, error_model='numpy')
+@kernel
 def _turn_about(rotation: Array, x: float, y: float, z: float, angle: float) -> None:
     """Multiply a rotation matrix from the right by a turn about an axis of its own frame."""
     s = np.sin(angle)
@@ -138,13 +183,14 @@ def _turn_about(rotation: Array, x: float, y: float, z: float, angle: float) -> 
         rotation[i, 2] = c * d + along * z + s * (a * y - b * x)
 
 
-@njit(cache=True, error_model='numpy')
-def _moves(tree: Tree, x: CoordinateState, tree_gain: Array, gain: Array) -> Array:
-    """Return angle or distance of each motion with its time derivatives (n_e, 3); fill gains."""
+@kernel
+def _moves(
+    tree: Tree, x: CoordinateState, move: Array, tree_gain: Array, gain: Array
+) -> None:
+    """Fill angle or distance of each motion with its time derivatives, and gains; zeros before."""
     first, lower, anchor, coefficient = tree.functions
     coordinate, number = tree.motion_coordinate, tree.motion_function
     value, rate, acceleration, x_gain = x
-    move = np.zeros((coordinate.size, 3))
     for e in range(coordinate.size):
         k = coordinate[e]
         at = value[k] if k >= 0 else 0.0
@@ -155,7 +201,6 @@ def _moves(tree: Tree, x: CoordinateState, tree_gain: Array, gain: Array) -> Arr
             move[e, 2] = f1 * acceleration[k] + f2 * rate[k] * rate[k]
             tree_gain[e] = f1
             gain[e] = f1 * x_gain[k]
-    return move
 
 
 @njit(cache=True, error_model='numpy')
@@ -168,25 +213,31 @@ def forward_kinematics(tree: Tree, q: Array, qd: Array, qdd: Array) -> BodyState
     q, qd, qdd : (n_q,) arrays
         Independent coordinates in rad or m, their rates and accelerations.
     """
+    room, state = room_for_bodies(tree)
+    move_bodies(tree, q, qd, qdd, room, state)
+    return state
+
+
+@kernel
+def move_bodies(
+    tree: Tree, q: Array, qd: Array, qdd: Array, room: KinematicsRoom, state: BodyState
+) -> None:
+    """Fill the motion of every body as `forward_kinematics` gives it.
+
+    `room` and `state` are those of `room_for_bodies`, or of an earlier state of the same tree.
+    """
     parent, first_motion = tree.parent, tree.first_motion
     turns, axis = tree.motion_turns, tree.motion_axis
     parent_rotation, parent_translation = tree.parent_rotation, tree.parent_translation
     child_rotation, child_translation = tree.child_rotation, tree.child_translation
-    n_b, n_e = parent.size, turns.size
-    x = coordinate_state(tree, q, qd, qdd)
-    p, rot, pivot = np.zeros((n_b, 3)), np.zeros((n_b, 3, 3)), np.zeros((n_b, 3))
-    w, v = np.zeros((n_b, 3)), np.zeros((n_b, 3))
-    al, a = np.zeros((n_b, 3)), np.zeros((n_b, 3))
-    screw = np.zeros((n_e, 6))
-    tree_gain, gain = np.zeros(n_e), np.zeros(n_e)
-    move = _moves(tree, x, tree_gain, gain)
-    frame = np.zeros((3, 3))
-    r = np.zeros(3)
-    r1 = np.zeros(3)
-    r2 = np.zeros(3)
+    p, rot, w, v, al, a, pivot, screw, tree_gain, gain = state[:10]
+    move, frame = room.move, room.frame
+    r, r1, r2 = room.shift[0], room.shift[1], room.shift[2]
+    _move_coordinates(tree, q, qd, qdd, room.coordinates)
+    _moves(tree, room.coordinates, move, tree_gain, gain)
     for i in range(3):
         rot[0, i, i] = 1.0
-    for b in range(1, n_b):
+    for b in range(1, parent.size):
         m = parent[b]
         begin, end = first_motion[b], first_motion[b + 1]
         for i in range(3):
@@ -259,9 +310,6 @@ def forward_kinematics(tree: Tree, q: Array, qd: Array, qdd: Array) -> BodyState
         al[b, 0], al[b, 1], al[b, 2] = lx, ly, lz
         v[b, 0], v[b, 1], v[b, 2] = vx + cx, vy + cy, vz + cz
         a[b, 0], a[b, 1], a[b, 2] = ax + ex + dx, ay + ey + dy, az + ez + dz
-    return BodyState(
-        p, rot, w, v, al, a, pivot, screw, tree_gain, gain, x.value, x.gain
-    )
 
 
 @njit(cache=True)

@@ -20,15 +20,8 @@ from human_model.report import SolveReport
 from muscle_analyzer.core.analyzer_options import MuscleAnalyzerOptions
 from muscle_analyzer.core.disc_frame import DiscLoad, disc_option, disc_setting
 from muscle_analyzer.core.exceptions import InputArrayError
-from muscle_analyzer.core.frame import (
-    ANSWER,
-    ASK,
-    WHOLE,
-    FrameLoads,
-    FrameModel,
-    no_loads,
-    solve_frames,
-)
+from muscle_analyzer.core.frame import ANSWER, ASK, WHOLE, solve_frames
+from muscle_analyzer.core.frame_data import FrameLoads, FrameModel, no_loads, room_for_frame
 from muscle_analyzer.core.held import hold
 from muscle_analyzer.core.joint_loads import JointLoad, JointLoadFrames, lumbosacral_body
 from muscle_analyzer.core.joint_reaction import NetMoment
@@ -147,7 +140,7 @@ class LoadSolver:
             force_length_velocity=bool(options.force_length_velocity),
             passive_force=bool(options.passive_force),
         )
-        self._held = hold(self._frame)
+        self._held = hold((self._frame, room_for_frame(self._frame)))
 
     def reset(self) -> None:
         """Forget the state solved before."""

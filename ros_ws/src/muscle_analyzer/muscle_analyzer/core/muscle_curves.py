@@ -18,6 +18,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from muscle_analyzer.core.kernel import kernel
 from muscle_analyzer.core.millard_curves import MillardCurves, curve_value, millard_curves
 from muscle_analyzer.core.osim_model import Muscle
 from muscle_analyzer.core.thelen_curves import (
@@ -199,6 +200,21 @@ def strength(
     passive : (n_m,)
         Force along the tendon without activation [N].
     """
+    pull, resistance = np.empty(path_length.size), np.empty(path_length.size)
+    fill_strength(muscles, path_length, path_velocity, passive, pull, resistance)
+    return pull, resistance
+
+
+@kernel
+def fill_strength(
+    muscles: MuscleParameters,
+    path_length: Array,
+    path_velocity: Array,
+    passive: bool,
+    pull: Array,
+    resistance: Array,
+) -> None:
+    """Fill what `strength` gives."""
     # Plain arrays: a tuple of them costs more at each call of a function than a curve.
     most, optima, slack = (
         muscles.max_isometric_force, muscles.optimal_fiber_length, muscles.tendon_slack_length,
@@ -207,10 +223,8 @@ def strength(
     width, strain, thelen = muscles.width_scale, muscles.passive_strain, muscles.thelen
     number, table = muscles.millard.number, muscles.millard.table
     lower, step, value, slope = table.lower, table.step, table.value, table.slope
-    n_m = path_length.size
-    pull, resistance = np.empty(n_m), np.zeros(n_m)
     stretched = 0.0
-    for i in range(n_m):
+    for i in range(path_length.size):
         length, velocity, cosine = fibre(slack[i], thickness[i], path_length[i], path_velocity[i])
         length /= optima[i]
         velocity /= fastest[i] * optima[i]
@@ -233,4 +247,3 @@ def strength(
         # Beyond its maximum shortening velocity a muscle pulls no more; it never pushes.
         pull[i] = max(along, 0.0) * active * max(rate, 0.0)
         resistance[i] = max(along * stretched, 0.0)
-    return pull, resistance

@@ -23,7 +23,7 @@ from muscle_analyzer.core.functions import evaluate
 from muscle_analyzer.core.kernel import kernel
 from muscle_analyzer.core.kinematics import BodyState
 from muscle_analyzer.core.muscle_path_table import PathTable, ProductTable, SpanTable
-from muscle_analyzer.core.path_routing import add_span, find_routes, room_for_route
+from muscle_analyzer.core.path_routing import Route, add_span, find_routes, room_for_route
 from muscle_analyzer.core.path_wrapping import place_surfaces
 
 Array = NDArray[np.float64]
@@ -67,6 +67,41 @@ class CrossedPaths(NamedTuple):
     length: Array
     arm: Array
     wrench: Array
+
+
+class PathRoom(NamedTuple):
+    """
+    What `trace_paths` writes to on its way.
+
+    Attributes
+    ----------
+    column : (n_j, 6)
+        Columns of the Jacobians that are used; to be filled before.
+    place : (n_p, 3)
+        Path points in ground axes [m].
+    frame : (n_o, 12)
+        Of the wrap objects, see `place_surfaces`.
+    route : Route
+    """
+
+    column: Array
+    place: Array
+    frame: Array
+    route: Route
+
+
+@njit(cache=True)
+def room_for_paths(table: PathTable, n_b: int) -> tuple[PathRoom, CrossedPaths]:
+    """Make room for the paths of a model of n_b bodies, and for what is found about them."""
+    n_m, wraps = table.point_start.size - 1, table.wraps
+    room = PathRoom(
+        np.empty((table.products.column_body.size, 6)),
+        np.empty(table.point_location.shape),
+        np.empty((wraps.body.size, 12)),
+        room_for_route(table.longest[0], wraps.surface.size, n_b),
+    )
+    n_e, n_k = table.body_index.size, table.crossed_index.size
+    return room, CrossedPaths(np.empty(n_m), np.empty(n_k), np.empty((n_e, 6)))
 
 
 @kernel
@@ -150,31 +185,29 @@ def _add_moment_arms(products: ProductTable, column: Array, wrench: Array, arm: 
         arm[k] += along
 
 
-@njit(cache=True, error_model='numpy')
+@kernel
 def _paths(
     table: PathTable,
     position: Array,
     rotation: Array,
-    column: Array,
     coordinate: Array,
     coordinate_gain: Array,
-) -> CrossedPaths:
-    """Compute all paths from the columns of the Jacobians that are used."""
-    n_m = table.point_start.size - 1
-    length, arm = np.empty(n_m), np.zeros(table.crossed_index.size)
-    wrench = np.zeros((table.body_index.size, 6))
-    place = np.empty(table.point_location.shape)
-    _place_points(table, position, rotation, coordinate, place)
-    _straight(table.spans, place, length, wrench)
+    room: PathRoom,
+    out: CrossedPaths,
+) -> None:
+    """Find all paths; the columns are there."""
+    length, arm, wrench = out
+    arm.fill(0.0)
+    wrench.fill(0.0)
+    _place_points(table, position, rotation, coordinate, room.place)
+    _straight(table.spans, room.place, length, wrench)
     if table.routed.size > 0:
-        frame = np.empty((table.wraps.body.size, 12))
-        place_surfaces(table.wraps, position, rotation, frame)
-        route = room_for_route(table.longest[0], table.wraps.surface.size, rotation.shape[0])
+        place_surfaces(table.wraps, position, rotation, room.frame)
         find_routes(
-            table, route, place, frame, rotation, coordinate, coordinate_gain, length, wrench, arm
-        )
-    _add_moment_arms(table.products, column, wrench, arm)
-    return CrossedPaths(length, arm, wrench)
+            table, room.route, room.place, room.frame, rotation, coordinate, coordinate_gain,
+            length, wrench, arm,
+        )  # fmt: skip
+    _add_moment_arms(table.products, room.column, wrench, arm)
 
 
 @njit(cache=True, error_model='numpy')
@@ -212,9 +245,9 @@ def muscle_paths(
     if table.condition_coordinate.size > 0 or table.motion_coordinate.size > 0:
         raise ValueError('conditional or moving path points need the coordinates: posture_paths')
     none = np.zeros(0)
-    column = np.empty((table.products.column_body.size, 6))
-    _columns_of_jacobians(table.products, jacobian, column)
-    found = _paths(table, body_position, body_rotation, column, none, none)
+    room, found = room_for_paths(table, jacobian.shape[0])
+    _columns_of_jacobians(table.products, jacobian, room.column)
+    _paths(table, body_position, body_rotation, none, none, room, found)
     return _with_all_arms(table, found, jacobian.shape[2])
 
 
@@ -232,10 +265,10 @@ def posture_paths(table: PathTable, state: BodyState, jacobian: Array) -> Muscle
     jacobian
         Spatial Jacobians (n_b, 6, n_q) about the ground's origin, (angular, linear).
     """
-    column = np.empty((table.products.column_body.size, 6))
-    _columns_of_jacobians(table.products, jacobian, column)
-    found = _paths(
-        table, state.position, state.rotation, column, state.coordinate, state.coordinate_gain
+    room, found = room_for_paths(table, jacobian.shape[0])
+    _columns_of_jacobians(table.products, jacobian, room.column)
+    _paths(
+        table, state.position, state.rotation, state.coordinate, state.coordinate_gain, room, found
     )
     return _with_all_arms(table, found, jacobian.shape[2])
 
@@ -243,10 +276,17 @@ def posture_paths(table: PathTable, state: BodyState, jacobian: Array) -> Muscle
 @njit(cache=True, error_model='numpy')
 def crossed_paths(table: PathTable, state: BodyState) -> CrossedPaths:
     """Compute all paths as `posture_paths`, but without Jacobians and the zeros among the arms."""
-    column = np.empty((table.products.column_body.size, 6))
-    _columns_of_motions(table.products, state.screw, state.gain, column)
-    return _paths(
-        table, state.position, state.rotation, column, state.coordinate, state.coordinate_gain
+    room, found = room_for_paths(table, state.position.shape[0])
+    trace_paths(table, state, room, found)
+    return found
+
+
+@kernel
+def trace_paths(table: PathTable, state: BodyState, room: PathRoom, out: CrossedPaths) -> None:
+    """Fill what `crossed_paths` gives; `room` and `out` are those of `room_for_paths`."""
+    _columns_of_motions(table.products, state.screw, state.gain, room.column)
+    _paths(
+        table, state.position, state.rotation, state.coordinate, state.coordinate_gain, room, out
     )
 
 
@@ -267,16 +307,17 @@ def body_wrenches(table: PathTable, wrench: Array, force: Array, n_bodies: int) 
     (n_b, 6)
         Moment about the ground's origin [N m] and force [N] on each body, ground axes.
     """
-    total = np.zeros((n_bodies, 6))
-    _add_wrenches(table.body_start, table.body_index, wrench, force, total)
+    total = np.empty((n_bodies, 6))
+    pull_bodies(table.body_start, table.body_index, wrench, force, total)
     return total
 
 
 @kernel
-def _add_wrenches(
+def pull_bodies(
     start: IntArray, body: IntArray, wrench: Array, force: Array, total: Array
 ) -> None:
-    """Add to the bodies (n_b, 6) what the muscles do to them."""
+    """Fill the sums (n_b, 6) of `body_wrenches`."""
+    total.fill(0.0)
     for m in range(force.size):
         for k in range(start[m], start[m + 1]):
             for i in range(6):
