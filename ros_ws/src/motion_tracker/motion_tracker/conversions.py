@@ -30,6 +30,7 @@ _LITTLE_ENDIAN = 1
 _STAMP = struct.Struct('<iII')
 _DOUBLE = 8
 _WRENCH = struct.Struct('<6d')
+_POSE = struct.Struct('<7d')
 
 
 def markers_from_msg(message: Markers) -> tuple[float, list[str], Array]:
@@ -58,21 +59,33 @@ def wrench_from_cdr(data: bytes) -> tuple[float, tuple[float, ...], tuple[float,
     TrackerError
         If the data are no little-endian WrenchStamped.
     """
-    if len(data) < _CDR_HEAD + _STAMP.size or data[1] != _LITTLE_ENDIAN:
-        raise TrackerError(f'wrench: {len(data)} bytes are no little-endian WrenchStamped')
-    seconds, nanoseconds, length = _STAMP.unpack_from(data, _CDR_HEAD)
-    begin = _STAMP.size + length
-    begin += _CDR_HEAD + (-begin) % _DOUBLE
-    if len(data) < begin + _WRENCH.size:
-        raise TrackerError(f'wrench: cut off after {len(data)} bytes')
-    values = _WRENCH.unpack_from(data, begin)
-    return seconds + nanoseconds / 1e9, values[:3], values[3:]
+    stamp, values = _stamped_from_cdr('wrench', data, _WRENCH)
+    return stamp, values[:3], values[3:]
 
 
 def box_from_msg(message: PoseStamped) -> tuple[float, Array]:
     """Return stamp [s] and centre of the box (3,) [m]."""
     at = message.pose.position
     return to_seconds(message.header.stamp), np.array([at.x, at.y, at.z])
+
+
+def box_from_cdr(data: bytes) -> tuple[float, tuple[float, ...]]:
+    """Return the same of a serialised PoseStamped as plain numbers; raises TrackerError."""
+    stamp, values = _stamped_from_cdr('box', data, _POSE)
+    return stamp, values[:3]
+
+
+def _stamped_from_cdr(name: str, data: bytes, numbers: struct.Struct,
+                      ) -> tuple[float, tuple[float, ...]]:
+    """Return the stamp [s] of a serialised message and the numbers behind its header."""
+    if len(data) < _CDR_HEAD + _STAMP.size or data[1] != _LITTLE_ENDIAN:
+        raise TrackerError(f'{name}: {len(data)} bytes are no little-endian message')
+    seconds, nanoseconds, length = _STAMP.unpack_from(data, _CDR_HEAD)
+    begin = _STAMP.size + length
+    begin += _CDR_HEAD + (-begin) % _DOUBLE
+    if len(data) < begin + numbers.size:
+        raise TrackerError(f'{name}: cut off after {len(data)} bytes')
+    return seconds + nanoseconds / 1e9, numbers.unpack_from(data, begin)
 
 
 def task_from_msg(message: Task) -> tuple[float, Array]:

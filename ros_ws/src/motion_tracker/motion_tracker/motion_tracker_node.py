@@ -81,7 +81,7 @@ class MotionTrackerNode(PipelineNode):
         self.subscribe(Task, 'task', self._on_task, qos.LATCHED)
         self._reader = MarkerReader()
         self.subscribe(Markers, STREAMS['markers'], self._on_markers, qos.FRAMES, raw=True)
-        self.subscribe(PoseStamped, STREAMS['box'], self._on_box, qos.FRAMES)
+        self.subscribe(PoseStamped, STREAMS['box'], self._on_box, qos.FRAMES, raw=True)
         for side in SIDES:
             self.subscribe(WrenchStamped, STREAMS[side],
                            partial(self._on_wrench, side), qos.PLATES, raw=True)
@@ -118,8 +118,8 @@ class MotionTrackerNode(PipelineNode):
             self._report_counts()
         self._take('markers', stamp, lambda tracker: tracker.push_markers(stamp, names, positions))
 
-    def _on_box(self, message: PoseStamped) -> None:
-        stamp, position = conversions.box_from_msg(message)
+    def _on_box(self, data: bytes) -> None:
+        stamp, position = conversions.box_from_cdr(data)
         self._take('box', stamp, lambda tracker: tracker.push_box(stamp, position))
 
     def _on_wrench(self, side: str, data: bytes) -> None:

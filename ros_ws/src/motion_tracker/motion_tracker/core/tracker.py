@@ -45,8 +45,8 @@ from motion_tracker.core.tracked import (
 
 Array = npt.NDArray[np.float64]
 
-#: Numbers of a sample of a plate.
-_WRENCH = 6
+#: Numbers of a sample of a plate, and of the box.
+_WRENCH, _PLACE = 6, 3
 
 _SHOULDERS = slice(POINTS.index('shoulder_r'), POINTS.index('shoulder_l') + 1)
 
@@ -89,9 +89,9 @@ class MotionTracker:
         self.inverse_kinematics = InverseKinematics(self.skeleton, self.model, self.settings.ik)
         self.counts: Counter[str] = Counter()
         self._plates = {name: (plates or {}).get(name, PlateGeometry(name)) for name in SIDES}
-        self._wrenches = {name: SampledStream(f'{name} plate', 6, self.counts,
+        self._wrenches = {name: SampledStream(f'{name} plate', _WRENCH, self.counts,
                                               self.settings.plate_cutoff) for name in SIDES}
-        self._box = SampledStream('box', 3, self.counts)
+        self._box = SampledStream('box', _PLACE, self.counts)
         self._hand_force = HandForceEstimator(box_mass, box_size, self.settings.hand_force)
         builder = LiftBuilder(self.skeleton, self.settings, self._plates, self._wrenches,
                               self._box)
@@ -172,9 +172,11 @@ class MotionTracker:
         stream.push(stamp, sample)
         return self._work(stream)
 
-    def push_box(self, stamp: float, position: npt.ArrayLike) -> list[Output]:
+    def push_box(self, stamp: float, position: Sequence[float] | Array) -> list[Output]:
         """Take one position of the box's centre (3,), world [m]."""
-        self._box.push(stamp, np.array(position, dtype=np.float64).reshape(3))
+        if len(position) != _PLACE:
+            raise TrackerError(f'box: position has {len(position)} components')
+        self._box.push(stamp, position)
         return self._work(self._box)
 
     def flush(self) -> list[Output]:
