@@ -210,16 +210,20 @@ class MuscleAnalyzerNode(PipelineNode):
 
     def _lift_done(self, lift: WaitingLift, analysis: Analysis) -> Iterator[None]:
         """Publish the analysis of a whole lift, message by message."""
-        self._spine.publish(conversions.spine_load_to_msg(analysis, lift.box_mass, self._disc))
+        spine = conversions.spine_load_fields(analysis, lift.box_mass, self._disc)
+        self._spine.publish(_bytes(SpineLoad, spine))
         yield
         torques = self.analyzer.joint_torques(analysis, lift.motion)
-        self._torques.publish(conversions.torques_to_msg(torques))
+        self._torques.publish(_bytes(JointTorques, conversions.torques_fields(torques)))
         yield
-        muscles = conversions.analysis_to_msg(analysis)
+        # Half a megabyte: made in one step, sent in the next.
+        muscles = _bytes(MuscleAnalysis, conversions.analysis_fields(analysis))
         yield
         self._muscles.publish(muscles)
         yield
-        self._joints.publish(conversions.joint_reactions_to_msg(analysis))
+        self._joints.publish(
+            _bytes(JointReactions, conversions.joint_reactions_fields(analysis))
+        )
         yield
         self.get_logger().info(
             f'{lift.lift_id} {lift.source}: peak L5-S1 compression '
