@@ -88,29 +88,6 @@ def test_one_lift_comes_out_with_its_events(outputs):
     assert measured.lift.end - window.time[-1] < 0.01
 
 
-@pytest.mark.parametrize('plates', [True, False])
-def test_a_measured_lift_comes_while_frames_go_on(person, marker_set, lift, solver, plates):
-    """A step with each frame after the margin, whether other samples come between or not."""
-    clock = Clock()
-    clock.time = 0.0
-    tracker = MotionTracker(person, marker_set, settings=TrackerSettings(wait=0.1), clock=clock)
-    still = [('markers', START + 3.0 + 0.01 * i, lift[0][-1][2]) for i in range(50)]
-    messages = in_order([*lift[0], *still], lift[2] if plates else [])
-    done, frames = None, 0
-    for message in messages:
-        clock.time = message[1]
-        outputs = feed_one(tracker, message, solver.model.names)
-        ends = [e for e in of(DetectedEvent, outputs) if e.event.phase is LiftPhase.END]
-        done = ends[0].event.time if ends else done
-        frames += done is not None and message[0] == 'markers' and message[1] >= done + 0.5
-        if of(MeasuredLift, outputs):
-            break
-    else:
-        pytest.fail('no lift before the end of the recording')
-    assert 5 < frames < 20
-    assert not of(MeasuredLift, tracker.flush())
-
-
 def test_live_samples_are_stamped_with_their_own_time(outputs, lift, tracker):
     frames = of(TrackedFrame, outputs)
     assert len(frames) == len(lift[0])
