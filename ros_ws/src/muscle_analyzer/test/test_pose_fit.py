@@ -6,14 +6,8 @@ import numpy as np
 import pytest
 
 from muscle_analyzer.core.kinematics import forward_kinematics
-from muscle_analyzer.core.pose_fit import (
-    Rates,
-    Targets,
-    fit_pose,
-    map_rates,
-    misfit,
-    misfit_jacobian,
-)
+from muscle_analyzer.core.pose_fit import Rates, fit_pose, map_rates
+from muscle_analyzer.core.pose_misfit import Targets, misfit, misfit_jacobian
 
 FREE = np.full(2, np.inf)
 BOTH = np.array([True, True])

@@ -12,6 +12,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from muscle_analyzer.core.kernel import kernel
+
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
@@ -53,33 +55,39 @@ def transposed_times(matrix: Array, vector: Array) -> Array:
 
 @njit(cache=True, error_model='numpy')
 def factorise(matrix: Array) -> bool:
-    """Write L of a positive definite matrix L L^T (n, n) into its lower triangle; False if not."""
+    """Write U of a positive definite matrix U^T U (n, n) into its upper triangle; False if not.
+
+    What is below the diagonal is lost.
+    """
     n = matrix.shape[0]
-    for j in range(n):
-        for k in range(j):
-            matrix[j, j] -= matrix[j, k] * matrix[j, k]
-        if not matrix[j, j] > 0.0:
+    # A copy of the row that is taken from those below: only so do the loops run in steps of four.
+    row = np.empty(n)
+    for k in range(n):
+        if not matrix[k, k] > 0.0:
             return False
-        matrix[j, j] = np.sqrt(matrix[j, j])
-        for i in range(j + 1, n):
-            for k in range(j):
-                matrix[i, j] -= matrix[i, k] * matrix[j, k]
-            matrix[i, j] /= matrix[j, j]
+        root = np.sqrt(matrix[k, k])
+        for j in range(n):
+            row[j] = matrix[k, j] / root
+            matrix[k, j] = row[j]
+        for i in range(k + 1, n):
+            factor = row[i]
+            for j in range(n):
+                matrix[i, j] -= factor * row[j]
     return True
 
 
-@njit(cache=True, error_model='numpy')
-def solve_factorised(lower: Array, right: Array) -> None:
-    """Solve L L^T x = right (n,) of `factorise`; the solution takes the right side's place."""
+@kernel
+def solve_factorised(upper: Array, right: Array) -> None:
+    """Solve U^T U x = right (n,) of `factorise`; the solution takes the right side's place."""
     n = right.size
-    for i in range(n):
-        for k in range(i):
-            right[i] -= lower[i, k] * right[k]
-        right[i] /= lower[i, i]
+    for k in range(n):
+        right[k] /= upper[k, k]
+        for i in range(k + 1, n):
+            right[i] -= upper[k, i] * right[k]
     for i in range(n - 1, -1, -1):
         for k in range(i + 1, n):
-            right[i] -= lower[k, i] * right[k]
-        right[i] /= lower[i, i]
+            right[i] -= upper[i, k] * right[k]
+        right[i] /= upper[i, i]
 
 
 @njit(cache=True)

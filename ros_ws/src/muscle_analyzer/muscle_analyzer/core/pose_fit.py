@@ -18,12 +18,13 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from muscle_analyzer.core.kernel import kernel
 from muscle_analyzer.core.kinematics import (
     BodyState,
-    body_jacobians,
     forward_kinematics,
+    move_bodies,
     point_acceleration,
-    turned,
+    room_for_bodies,
 )
 from muscle_analyzer.core.multibody import Tree
 from muscle_analyzer.core.normal_equations import (
@@ -33,6 +34,12 @@ from muscle_analyzer.core.normal_equations import (
     solution,
     solve_factorised,
     transposed_times,
+)
+from muscle_analyzer.core.pose_misfit import (
+    Targets,
+    misfit_jacobian,
+    set_misfit,
+    set_misfit_jacobian,
 )
 
 Array = NDArray[np.float64]
@@ -49,40 +56,6 @@ _SMALLEST_DAMPING = 1e-12
 # 1e-8 m of a hand).
 FLAT_COST = 1e-5
 FLAT_STEPS = 3
-
-
-class Targets(NamedTuple):
-    """What is fitted, ground axes.
-
-    Attributes
-    ----------
-    point_body : (n_p,) int array
-    point_local : (n_p, 3) array
-        In the body's axes, m.
-    point : (n_p, 3) array
-        Where the points shall be, m.
-    point_weight : (n_p,) array
-        1 / m.
-    frame_body : (n_f,) int array
-    frame : (n_f, 3, 3) array
-        Orientations that the bodies shall have, ground <- body.
-    frame_weight : (n_f,) array
-        1 / rad.
-    reference : (n_q,) array
-        Value that each coordinate is weakly pulled to, rad or m.
-    reference_weight : (n_q,) array
-        1 / rad or 1 / m; 0 for no pull.
-    """
-
-    point_body: IntArray
-    point_local: Array
-    point: Array
-    point_weight: Array
-    frame_body: IntArray
-    frame: Array
-    frame_weight: Array
-    reference: Array
-    reference_weight: Array
 
 
 class Rates(NamedTuple):
@@ -132,68 +105,6 @@ class PoseFit(NamedTuple):
 
 
 @njit(cache=True)
-def _rotation_vector(target: Array, actual: Array, out: Array) -> None:
-    """Write the turn that takes `target` to `actual`, ground axes, rad, into `out` (3,)."""
-    cosine = -0.5
-    out[:] = 0.0
-    for k in range(3):
-        # Half the skew part of actual target^T, column by column, and half its trace.
-        out[0] += 0.5 * (actual[2, k] * target[1, k] - actual[1, k] * target[2, k])
-        out[1] += 0.5 * (actual[0, k] * target[2, k] - actual[2, k] * target[0, k])
-        out[2] += 0.5 * (actual[1, k] * target[0, k] - actual[0, k] * target[1, k])
-        for i in range(3):
-            cosine += 0.5 * actual[i, k] * target[i, k]
-    sine = np.sqrt(out[0] ** 2 + out[1] ** 2 + out[2] ** 2)
-    if sine > 1e-9:
-        out *= np.arctan2(sine, cosine) / sine
-
-
-@njit(cache=True)
-def misfit(targets: Targets, state: BodyState) -> Array:
-    """Return the weighted misfits (3 n_p + 3 n_f,): points first, then rotation vectors."""
-    n_p = targets.point_body.size
-    n_f = targets.frame_body.size
-    out = np.empty(3 * (n_p + n_f))
-    for i in range(n_p):
-        b = targets.point_body[i]
-        for j in range(3):
-            place = state.position[b, j]
-            for k in range(3):
-                place += state.rotation[b, j, k] * targets.point_local[i, k]
-            out[3 * i + j] = targets.point_weight[i] * (place - targets.point[i, j])
-    for i in range(n_f):
-        at = out[3 * (n_p + i) : 3 * (n_p + i) + 3]
-        _rotation_vector(targets.frame[i], state.rotation[targets.frame_body[i]], at)
-        at *= targets.frame_weight[i]
-    return out
-
-
-@njit(cache=True)
-def misfit_jacobian(tree: Tree, targets: Targets, state: BodyState) -> Array:
-    """Return the derivative (3 n_p + 3 n_f, n_q) of `misfit`, of rotations to first order."""
-    n_p = targets.point_body.size
-    n_f = targets.frame_body.size
-    n_q = tree.n_independent[0]
-    jacobian = body_jacobians(tree, state)
-    out = np.empty((3 * (n_p + n_f), n_q))
-    for i in range(n_p):
-        b = targets.point_body[i]
-        x, y, z = turned(state.rotation[b], targets.point_local[i]) + state.position[b]
-        weight = targets.point_weight[i]
-        for k in range(n_q):
-            wx, wy, wz = jacobian[b, 0, k], jacobian[b, 1, k], jacobian[b, 2, k]
-            out[3 * i, k] = weight * (jacobian[b, 3, k] + wy * z - wz * y)
-            out[3 * i + 1, k] = weight * (jacobian[b, 4, k] + wz * x - wx * z)
-            out[3 * i + 2, k] = weight * (jacobian[b, 5, k] + wx * y - wy * x)
-    for i in range(n_f):
-        b = targets.frame_body[i]
-        for j in range(3):
-            for k in range(n_q):
-                out[3 * (n_p + i) + j, k] = targets.frame_weight[i] * jacobian[b, j, k]
-    return out
-
-
-@njit(cache=True)
 def _bounded_step(
     normal: Array,
     gradient: Array,
@@ -237,7 +148,7 @@ def _bounded_step(
             return step
 
 
-@njit(cache=True)
+@kernel
 def _cost(targets: Targets, residual: Array, q: Array) -> float:
     total = 0.0
     for i in range(residual.size):
@@ -280,14 +191,19 @@ def fit_pose(
     for k in range(n_q):
         if fitted[k]:
             q[k] = min(max(q[k], lower[k]), upper[k])
-    state = forward_kinematics(tree, q, zero, zero)
-    residual = misfit(targets, state)
+    n_m = 3 * (targets.point_body.size + targets.frame_body.size)
+    jacobian, spatial = np.empty((n_m, n_q)), np.empty((tree.parent.size, 6, n_q))
+    residual, left = np.empty(n_m), np.empty(n_m)
+    room, state = room_for_bodies(tree)
+    other_room, there = room_for_bodies(tree)
+    move_bodies(tree, q, zero, zero, room, state)
+    set_misfit(targets, state, residual)
     cost = _cost(targets, residual, q)
     relative_damping = _FIRST_DAMPING
     size = np.inf
     flat = 0
     for iteration in range(1, max_iterations + 1):
-        jacobian = misfit_jacobian(tree, targets, state)
+        set_misfit_jacobian(tree, targets, state, spatial, jacobian)
         normal, gradient = normal_equations(jacobian, residual)
         for k in range(n_q):
             weight = targets.reference_weight[k] ** 2
@@ -311,8 +227,8 @@ def fit_pose(
                 elif step[k] == lower[k] - q[k]:
                     trial[k] = lower[k]
             size = np.max(np.abs(trial - q))
-            there = forward_kinematics(tree, trial, zero, zero)
-            left = misfit(targets, there)
+            move_bodies(tree, trial, zero, zero, other_room, there)
+            set_misfit(targets, there, left)
             trial_cost = _cost(targets, left, trial)
             if trial_cost <= cost or size < tolerance:
                 break
@@ -322,7 +238,10 @@ def fit_pose(
         relative_damping = max(relative_damping * _DAMPING_DOWN, _SMALLEST_DAMPING)
         flat = flat + 1 if cost - trial_cost < FLAT_COST else 0
         if trial_cost <= cost:
-            q, state, residual, cost = trial, there, left, trial_cost
+            q, cost = trial, trial_cost
+            room, other_room = other_room, room
+            state, there = there, state
+            residual, left = left, residual
         if size < tolerance or flat == FLAT_STEPS:
             return PoseFit(q, iteration, cost, size, True, state, residual)
     return PoseFit(q, max_iterations, cost, size, False, state, residual)

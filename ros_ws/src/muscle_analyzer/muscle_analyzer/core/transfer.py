@@ -27,7 +27,7 @@ from human_model.skeleton import Skeleton
 from muscle_analyzer.core.body_points import upright_coordinates
 from muscle_analyzer.core.exceptions import TransferError
 from muscle_analyzer.core.held import hold
-from muscle_analyzer.core.pose_fit import Targets
+from muscle_analyzer.core.pose_misfit import Targets
 from muscle_analyzer.core.skeleton_frames import SkeletonMotion
 from muscle_analyzer.core.subject_model import SubjectModel
 from muscle_analyzer.core.transfer_frames import TransferSetup, transfer_frames

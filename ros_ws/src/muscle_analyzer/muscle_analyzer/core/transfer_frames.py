@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from human_model.tree import TreeArrays
 from muscle_analyzer.core.held import Held
 from muscle_analyzer.core.multibody import Tree
-from muscle_analyzer.core.pose_fit import Rates, Targets, fit_pose, map_rates
+from muscle_analyzer.core.pose_fit import Rates, fit_pose, map_rates
+from muscle_analyzer.core.pose_misfit import Targets
 from muscle_analyzer.core.skeleton_frames import (
     SkeletonMotion,
     SkeletonState,
