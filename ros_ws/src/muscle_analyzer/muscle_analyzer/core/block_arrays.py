@@ -224,7 +224,7 @@ def solved_arrays(
     ----------
     held : Held of Places
     disc_pose, joint_force, joint_moment, net_moment, pelvis_residual
-        Of `frame.FrameLoads`.
+        Of `frame_data.FrameLoads`.
     point_distance, frame_angle
         Of `transfer.TransferredMotion`.
     """
