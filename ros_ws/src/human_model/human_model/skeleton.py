@@ -210,7 +210,7 @@ class Skeleton:
         ``forces``: ``ground_force``, ``cop``, ``free_moment``, ``hand_force`` (n, 2, 3) and
         ``box_position`` (n, 3). What is left out is zero; cop and box_position are NaN.
         """
-        stamps = np.atleast_1d(np.asarray(time, dtype=np.float64))
+        stamps = np.ascontiguousarray(time, dtype=np.float64)
         position = self._block('q', q)
         unknown = sorted(set(forces) - set(_LEFT_OUT))
         if unknown:
@@ -253,7 +253,9 @@ class Skeleton:
         return vector
 
     def _block(self, name: str, value: npt.ArrayLike) -> Array:
-        block = np.atleast_2d(np.ascontiguousarray(value, dtype=np.float64))
+        block = np.ascontiguousarray(value, dtype=np.float64)
+        if block.ndim == 1:
+            block = block[None]
         if block.ndim != 2 or block.shape[1] != len(self.coordinates):
             raise MotionError(f'{self.name}: {name} must have shape (n, {len(self.coordinates)}), '
                               f'got {block.shape}')

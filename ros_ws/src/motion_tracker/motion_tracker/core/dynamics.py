@@ -28,7 +28,8 @@ def needed_force(skeleton: Skeleton, q: Array, qd: Array, qdd: Array) -> Array:
     -------
     ndarray (3,) or (n, 3)
     """
-    position, velocity, acceleration = (np.atleast_2d(np.ascontiguousarray(rows))
+    block = (-1, len(skeleton.coordinates))
+    position, velocity, acceleration = (np.ascontiguousarray(rows).reshape(block)
                                         for rows in (q, qd, qdd))
     force: Array = outer_force(skeleton.tree, position, velocity, acceleration, GRAVITY)
     return force.reshape((*np.shape(q)[:-1], 3))

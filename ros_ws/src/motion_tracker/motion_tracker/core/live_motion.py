@@ -93,7 +93,8 @@ class LiveMotion:
         notices: list[Notice] = []
         missing = None
         if not silent:
-            vertical = float(forces['ground_force'][0, :, 2].sum())
+            right, left = forces['ground_force'][0, :, 2].tolist()
+            vertical = right + left
             need = float(needed_force(self._skeleton, q, qd, qdd)[2])
             missing = need - vertical
         if carried is not None:
