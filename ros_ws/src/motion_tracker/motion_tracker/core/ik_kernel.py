@@ -61,7 +61,8 @@ def _normal_equations(tree: TreeArrays, origin: Array, axis: Array, position: Ar
     """Add half the gradient and half the Gauss-Newton Hessian of the marker terms."""
     n_q = gradient.shape[0]
     path = np.empty(n_q, dtype=np.int64)
-    column = np.empty((n_q, 3))
+    # Components of the columns of the Jacobian along the path, each in a row.
+    cx, cy, cz = np.empty(n_q), np.empty(n_q), np.empty(n_q)
     for i in range(weight.shape[0]):
         w = weight[i]
         if w <= 0.0:
@@ -70,27 +71,26 @@ def _normal_equations(tree: TreeArrays, origin: Array, axis: Array, position: Ar
         j = body[i]
         while j >= 0:
             if tree.kind[j] == 1:
-                column[count] = axis[j]
+                cx[count], cy[count], cz[count] = axis[j, 0], axis[j, 1], axis[j, 2]
             else:
                 x = position[i, 0] - origin[j, 0]
                 y = position[i, 1] - origin[j, 1]
                 z = position[i, 2] - origin[j, 2]
-                column[count, 0] = axis[j, 1] * z - axis[j, 2] * y
-                column[count, 1] = axis[j, 2] * x - axis[j, 0] * z
-                column[count, 2] = axis[j, 0] * y - axis[j, 1] * x
+                cx[count] = axis[j, 1] * z - axis[j, 2] * y
+                cy[count] = axis[j, 2] * x - axis[j, 0] * z
+                cz[count] = axis[j, 0] * y - axis[j, 1] * x
             path[count] = j
             count += 1
             j = tree.parent[j]
+        ex, ey, ez = (position[i, 0] - target[i, 0], position[i, 1] - target[i, 1],
+                      position[i, 2] - target[i, 2])
         for a in range(count):
-            dot = 0.0
-            for r in range(3):
-                dot += column[a, r] * (position[i, r] - target[i, r])
-            gradient[path[a]] += w * dot
-            for b in range(a + 1):
-                dot = (column[a, 0] * column[b, 0] + column[a, 1] * column[b, 1]
-                       + column[a, 2] * column[b, 2])
-                # Paths run from the marker to the root, so path[a] < path[b]: lower triangle.
-                hessian[path[b], path[a]] += w * dot
+            x, y, z = cx[a], cy[a], cz[a]
+            gradient[path[a]] += w * (x * ex + y * ey + z * ez)
+            # Paths run from the marker to the root, so path[a] >= path[b]: lower triangle.
+            row = hessian[path[a]]
+            for b in range(a, count):
+                row[path[b]] += w * (cx[b] * x + cy[b] * y + cz[b] * z)
 
 
 @numba.njit(cache=True)
