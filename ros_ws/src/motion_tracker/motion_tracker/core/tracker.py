@@ -101,7 +101,7 @@ class MotionTracker:
         self._detectors = {FROM_BOX: LiftEventDetector(self.settings.events),
                            FROM_HANDS: LiftEventDetector(self.settings.events)}
         self._arrival = Arrival(self.settings.wait, self.settings.longest_gap, clock)
-        self._queue: deque[tuple[float, Array, float]] = deque()
+        self._queue: deque[tuple[float, Array, IKSolution, float]] = deque()
         self._newest = -np.inf
         self._rate = 0.0
         self._live: LiveMotion | None = None
@@ -157,7 +157,11 @@ class MotionTracker:
         self._notices += [Notice(f'marker {name!r} is not tracked: it has no place in the marker '
                                  'model', True) for name in unknown]
         self._newest = stamp
-        self._queue.append((stamp, target, self._arrival.arrive()))
+        # The fit needs nothing but markers: it is done while plates and box are on their way.
+        solution = self.inverse_kinematics.solve(target, self._last_q)
+        if np.isfinite(solution.rms):
+            self._last_q = solution.q
+        self._queue.append((stamp, target, solution, self._arrival.arrive()))
         return self._work(None)
 
     def push_wrench(self, side: str, stamp: float, force: Sequence[float] | Array,
@@ -213,31 +217,30 @@ class MotionTracker:
         if self._rate == 0.0:
             if len(self._queue) <= RATE_SAMPLES and not (final and len(self._queue) > 2):
                 return outputs
-            self._start(list(self._queue))
+            self._start()
         while self._queue:
-            stamp, target, arrived = self._queue[0]
+            stamp, _, solution, arrived = self._queue[0]
             ready, said = self._arrival.ready(stamp, arrived, self._newest, self._awaited(), final)
             self._notices += said
             if not ready:
                 break
             self._queue.popleft()
-            outputs += self._frame(stamp, target)
+            outputs += self._frame(stamp, solution)
         notices, self._notices = self._notices, []
         return notices + outputs
 
-    def _start(self, frames: Sequence[tuple[float, Array, float]]) -> None:
-        stamps = [stamp for stamp, _, _ in frames]
+    def _start(self) -> None:
+        stamps = [stamp for stamp, *_ in self._queue]
         self._rate = rate_of(stamps, 'markers')
-        speed = initial_speed(stamps, [target for _, target, _ in frames])
+        speed = initial_speed(stamps, [target for _, target, *_ in self._queue])
         if speed > self.settings.events.rest_speed:
             self._status.settle(stamps[0], 'the filters settle: the recording begins in motion, '
                                            f'its markers move at {speed:.2f} m/s rms')
         self._live = LiveMotion(self.skeleton, self._rate, self.settings, self._plates,
                                 self._wrenches, self._hand_force, self._status, self.counts)
 
-    def _frame(self, stamp: float, target: Array) -> list[Output]:
+    def _frame(self, stamp: float, solution: IKSolution) -> list[Output]:
         assert self._live is not None
-        solution = self.inverse_kinematics.solve(target, self._last_q)
         self._lifts.record(stamp, solution)
         self._latest = stamp
         self._left += 1
@@ -248,7 +251,6 @@ class MotionTracker:
         events = self._detect(stamp, solution, box)
         frame, notices = self._live.sample(stamp, solution, box, self._lifts.lifting,
                                            self._lifts.end_known)
-        self._last_q = solution.q
         self._begin_builds(stamp)
         return [frame, *notices, *events]
 
