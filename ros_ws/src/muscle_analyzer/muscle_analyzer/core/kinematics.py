@@ -151,25 +151,6 @@ def cross3(ax, ay, az, bx, by, bz):  # type: ignore[no-untyped-def]
     return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
 
 
-@njit(cache=True)
-def cross(a: Array, b: Array) -> Array:
-    """Return the cross product (3,); compiles and runs faster than NumPy's general one."""
-    out = np.empty(3)
-    out[0], out[1], out[2] = cross3(a[0], a[1], a[2], b[0], b[1], b[2])
-    return out
-
-
-@njit(cache=True)
-def turned(rotation: Array, vector: Array) -> Array:
-    """Return a rotation matrix (3, 3) times a vector (3,)."""
-    out = np.empty(3)
-    for i in range(3):
-        out[i] = (
-            rotation[i, 0] * vector[0] + rotation[i, 1] * vector[1] + rotation[i, 2] * vector[2]
-        )
-    return out
-
-
 @kernel
 def _turn_about(rotation: Array, x: float, y: float, z: float, angle: float) -> None:
     """Multiply a rotation matrix from the right by a turn about an axis of its own frame."""
@@ -312,31 +293,32 @@ def move_bodies(
         a[b, 0], a[b, 1], a[b, 2] = ax + ex + dx, ay + ey + dy, az + ez + dz
 
 
-@njit(cache=True)
-def point_acceleration(state: BodyState, body: int, local: Array) -> Array:
-    """Return the acceleration (3,) of a body's point at `local` (3,) m in its axes, m/s^2."""
-    arm = turned(state.rotation[body], local)
-    omega = state.angular_velocity[body]
-    swing = cross(omega, cross(omega, arm))
-    tangent = cross(state.angular_acceleration[body], arm)
-    for i in range(3):
-        swing[i] += tangent[i] + state.acceleration[body, i]
-    return swing
+@kernel
+def set_jacobians(tree: Tree, state: BodyState, out: Array) -> None:
+    """Write the spatial Jacobians (n_b, 6, n_q) of all bodies about the ground's origin."""
+    parent, first, independent = tree.parent, tree.first_motion, tree.independent
+    coordinate, screw, gain = tree.motion_coordinate, state.screw, state.gain
+    n_q = out.shape[2]
+    for i in range(6):
+        for k in range(n_q):
+            out[0, i, k] = 0.0
+    for b in range(1, parent.size):
+        m = parent[b]
+        for i in range(6):
+            for k in range(n_q):
+                out[b, i, k] = out[m, i, k]
+        for e in range(first[b], first[b + 1]):
+            q = independent[coordinate[e]] if coordinate[e] >= 0 else -1
+            if q >= 0:
+                for i in range(6):
+                    out[b, i, q] += screw[e, i] * gain[e]
 
 
 @njit(cache=True)
 def body_jacobians(tree: Tree, state: BodyState) -> Array:
-    """Return the spatial Jacobians (n_b, 6, n_q) of all bodies about the ground's origin."""
-    n_b = tree.parent.size
-    jacobian = np.zeros((n_b, 6, tree.n_independent[0]))
-    for b in range(1, n_b):
-        jacobian[b] = jacobian[tree.parent[b]]
-        for e in range(tree.first_motion[b], tree.first_motion[b + 1]):
-            if tree.motion_coordinate[e] >= 0:
-                k = tree.independent[tree.motion_coordinate[e]]
-                if k >= 0:
-                    for i in range(6):
-                        jacobian[b, i, k] += state.screw[e, i] * state.gain[e]
+    """Return the Jacobians of `set_jacobians`."""
+    jacobian = np.empty((tree.parent.size, 6, tree.n_independent[0]))
+    set_jacobians(tree, state, jacobian)
     return jacobian
 
 

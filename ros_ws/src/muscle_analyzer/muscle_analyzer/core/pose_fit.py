@@ -23,7 +23,6 @@ from muscle_analyzer.core.kinematics import (
     BodyState,
     forward_kinematics,
     move_bodies,
-    point_acceleration,
     room_for_bodies,
 )
 from muscle_analyzer.core.multibody import Tree
@@ -38,6 +37,7 @@ from muscle_analyzer.core.normal_equations import (
 from muscle_analyzer.core.pose_misfit import (
     Targets,
     misfit_jacobian,
+    set_left_acceleration,
     set_misfit,
     set_misfit_jacobian,
 )
@@ -297,15 +297,6 @@ def map_rates(
     rate = solution(factor, solved, index, right + pull * velocity.reference)
     # With zero coordinate accelerations the points' accelerations are J' q'.
     moving = forward_kinematics(tree, q, rate, np.zeros(n_q))
-    for i in range(n_p):
-        bias = point_acceleration(moving, targets.point_body[i], targets.point_local[i])
-        for j in range(3):
-            left = acceleration.point[i, j] - bias[j]
-            wanted[3 * i + j] = targets.point_weight[i] * left
-    for i in range(n_f):
-        bias = moving.angular_acceleration[targets.frame_body[i]]
-        for j in range(3):
-            left = acceleration.frame[i, j] - bias[j]
-            wanted[3 * (n_p + i) + j] = targets.frame_weight[i] * left
+    set_left_acceleration(targets, moving, acceleration.point, acceleration.frame, wanted)
     right = transposed_times(jacobian, wanted) + pull * acceleration.reference
     return rate, solution(factor, solved, index, right)

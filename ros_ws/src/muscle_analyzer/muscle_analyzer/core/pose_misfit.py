@@ -11,7 +11,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from muscle_analyzer.core.kernel import kernel
-from muscle_analyzer.core.kinematics import BodyState
+from muscle_analyzer.core.kinematics import BodyState, cross3, set_jacobians
 from muscle_analyzer.core.multibody import Tree
 
 Array = NDArray[np.float64]
@@ -99,27 +99,6 @@ def misfit(targets: Targets, state: BodyState) -> Array:
 
 
 @kernel
-def _set_jacobians(tree: Tree, state: BodyState, out: Array) -> None:
-    """Write the spatial Jacobians (n_b, 6, n_q) as `kinematics.body_jacobians` gives them."""
-    parent, first, independent = tree.parent, tree.first_motion, tree.independent
-    coordinate, screw, gain = tree.motion_coordinate, state.screw, state.gain
-    n_q = out.shape[2]
-    for i in range(6):
-        for k in range(n_q):
-            out[0, i, k] = 0.0
-    for b in range(1, parent.size):
-        m = parent[b]
-        for i in range(6):
-            for k in range(n_q):
-                out[b, i, k] = out[m, i, k]
-        for e in range(first[b], first[b + 1]):
-            q = independent[coordinate[e]] if coordinate[e] >= 0 else -1
-            if q >= 0:
-                for i in range(6):
-                    out[b, i, q] += screw[e, i] * gain[e]
-
-
-@kernel
 def set_misfit_jacobian(
     tree: Tree, targets: Targets, state: BodyState, spatial: Array, out: Array
 ) -> None:
@@ -127,7 +106,7 @@ def set_misfit_jacobian(
 
     `spatial` is room for the Jacobians (n_b, 6, n_q) of the bodies.
     """
-    _set_jacobians(tree, state, spatial)
+    set_jacobians(tree, state, spatial)
     rotation, position = state.rotation, state.position
     body, local, weight = targets.point_body, targets.point_local, targets.point_weight
     n_p, n_q = body.size, out.shape[1]
@@ -158,3 +137,40 @@ def misfit_jacobian(tree: Tree, targets: Targets, state: BodyState) -> Array:
     out = np.empty((3 * (targets.point_body.size + targets.frame_body.size), n_q))
     set_misfit_jacobian(tree, targets, state, np.empty((tree.parent.size, 6, n_q)), out)
     return out
+
+
+@kernel
+def set_left_acceleration(
+    targets: Targets, state: BodyState, point: Array, frame: Array, out: Array
+) -> None:
+    """Write weighted accelerations (3 n_p + 3 n_f,) less those that the bodies have already.
+
+    Parameters
+    ----------
+    targets : Targets
+    state : BodyState
+        With velocities and accelerations.
+    point, frame : (n_p, 3), (n_f, 3) arrays
+        Of the points and the frames, m/s^2 and rad/s^2.
+    """
+    rotation, omega = state.rotation, state.angular_velocity
+    alpha, acceleration = state.angular_acceleration, state.acceleration
+    body, local, weight = targets.point_body, targets.point_local, targets.point_weight
+    n_p = body.size
+    for i in range(n_p):
+        b = body[i]
+        lx, ly, lz = local[i, 0], local[i, 1], local[i, 2]
+        x = rotation[b, 0, 0] * lx + rotation[b, 0, 1] * ly + rotation[b, 0, 2] * lz
+        y = rotation[b, 1, 0] * lx + rotation[b, 1, 1] * ly + rotation[b, 1, 2] * lz
+        z = rotation[b, 2, 0] * lx + rotation[b, 2, 1] * ly + rotation[b, 2, 2] * lz
+        wx, wy, wz = omega[b, 0], omega[b, 1], omega[b, 2]
+        sx, sy, sz = cross3(wx, wy, wz, x, y, z)
+        sx, sy, sz = cross3(wx, wy, wz, sx, sy, sz)
+        tx, ty, tz = cross3(alpha[b, 0], alpha[b, 1], alpha[b, 2], x, y, z)
+        out[3 * i] = weight[i] * (point[i, 0] - (sx + (tx + acceleration[b, 0])))
+        out[3 * i + 1] = weight[i] * (point[i, 1] - (sy + (ty + acceleration[b, 1])))
+        out[3 * i + 2] = weight[i] * (point[i, 2] - (sz + (tz + acceleration[b, 2])))
+    body, weight = targets.frame_body, targets.frame_weight
+    for f in range(body.size):
+        for j in range(3):
+            out[3 * (n_p + f) + j] = weight[f] * (frame[f, j] - alpha[body[f], j])
