@@ -72,7 +72,7 @@ def disc_frame_id(station: str) -> str:
 
 def mass_in_hands(motion: BodyMotion, box_mass: float) -> float:
     """Return the mass in the hands [kg]: that of the box while it pushes a hand, else 0."""
-    return box_mass if motion.hand_force.any() else 0.0
+    return box_mass if np.count_nonzero(motion.hand_force) else 0.0
 
 
 def analysis_fields(analysis: MuscleAnalysis) -> dict[str, Any]:

@@ -116,11 +116,13 @@ def worst(reports: Sequence[SolveReport], time: Sequence[float]) -> SolveReport:
     time
         Of the samples [s].
     """
+    if len(reports) == 1:
+        return reports[0]
     k = max(
         range(len(reports)), key=lambda i: (int(reports[i].status), reports[i].primal_residual)
     )
     bad = sum(not report.ok for report in reports)
-    if len(reports) == 1 or not bad:
+    if not bad:
         return reports[k]
     where = f'{bad} of {len(reports)} samples, worst at {time[k] - time[0]:.2f} s'
     return replace(reports[k], message=f'{where}: {reports[k].message}')
