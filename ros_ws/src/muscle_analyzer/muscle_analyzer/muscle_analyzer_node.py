@@ -156,11 +156,13 @@ class MuscleAnalyzerNode(PipelineNode):
         torques = self.analyzer.joint_torques(analysis, motion)
         self._torques.publish(_bytes(JointTorques, conversions.torques_fields(torques)))
         self._muscles.publish(_bytes(MuscleAnalysis, conversions.analysis_fields(analysis)))
-        self._joints.publish(
-            _bytes(JointReactions, conversions.joint_reactions_fields(analysis))
-        )
-        for reaction in conversions.reactions_fields(analysis, self._disc):
-            self._reaction.publish(_bytes(WrenchStamped, reaction))
+        # Nobody needs these at once, and often nobody listens.
+        if self._joints.get_subscription_count():
+            joints = conversions.joint_reactions_fields(analysis)
+            self._joints.publish(_bytes(JointReactions, joints))
+        if self._reaction.get_subscription_count():
+            for reaction in conversions.reactions_fields(analysis, self._disc):
+                self._reaction.publish(_bytes(WrenchStamped, reaction))
         self.counts['live samples'] += len(analysis)
         self.counts['live samples with good L5-S1 load'] += analysis.good_spine_samples
         self._queue.work(LIFT_STEP)
