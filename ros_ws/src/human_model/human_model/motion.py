@@ -291,7 +291,8 @@ def _shapes(n: int, n_q: int, n_p: int, n_f: int) -> dict[str, tuple[int, ...]]:
 
 def _frozen(name: str, value: npt.ArrayLike) -> Array:
     try:
-        array = np.array(value, dtype=np.float64)
+        # Always in rows: compiled functions are made for one layout.
+        array = np.array(value, dtype=np.float64, order='C')
     except (TypeError, ValueError) as error:
         raise MotionError(f'motion.{name}: not an array of numbers ({error})') from error
     array.setflags(write=False)

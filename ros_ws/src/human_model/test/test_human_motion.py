@@ -3,6 +3,7 @@
 """Motion blocks and lifts."""
 
 import io
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -55,6 +56,15 @@ def test_columns_by_name(motion, body):
         motion.position[:, body.index('knee_angle_r')])
     with pytest.raises(MotionError, match="no point named 'nose'"):
         motion.point('nose')
+
+
+def test_arrays_lie_in_rows_whatever_they_were_made_from(motion):
+    """Compiled functions are made for one layout: another one would hold up a running node."""
+    columns = np.asfortranarray(motion.points)
+    again = replace(motion, points=columns)
+    assert again.points.flags.c_contiguous
+    assert np.array_equal(again.points, columns)
+    assert again[2:4].points.flags.c_contiguous
 
 
 def test_arrays_cannot_be_written(motion):

@@ -228,11 +228,11 @@ class MotionTransfer:
         done, out = transfer_frames(
             self._held,
             SkeletonMotion(
-                np.ascontiguousarray(motion.position[samples]),
-                np.ascontiguousarray(motion.velocity[samples]),
-                np.ascontiguousarray(motion.acceleration[samples]),
-                np.ascontiguousarray(motion.points[samples]),
-                np.ascontiguousarray(motion.frames[samples]),
+                motion.position[samples],
+                motion.velocity[samples],
+                motion.acceleration[samples],
+                motion.points[samples],
+                motion.frames[samples],
                 *self._columns,
             ),
             self._start,
