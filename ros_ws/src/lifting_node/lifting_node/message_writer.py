@@ -101,12 +101,13 @@ def _numbers(code: str) -> tuple[Put, Make]:
     size = kind.itemsize
 
     def put(out: bytearray, value: Any) -> None:
-        data = np.asarray(value, kind)
+        data = np.ascontiguousarray(value, kind)
         out += _FILL[-len(out) % 4]
         out += COUNT.pack(data.size)
         if data.size:
             out += _FILL[-len(out) % size]
-            out += data.tobytes()
+            # Its own bytes, not a copy: those of a whole lift are half a megabyte.
+            out += data.data
 
     def make(value: Any) -> array[Any]:
         # The form that rclpy takes without looking at each element.
