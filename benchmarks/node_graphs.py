@@ -6,7 +6,8 @@ The latency of a frame begins when the player's middleware is handed its `marker
 when the monitor's word on it has reached another process: DDS stamps both, with the clock of this
 machine. So the plate samples that the tracker needs for the frame, inverse kinematics, muscle
 analysis, the monitor and every hop between are in it; the delay of the live filters, which is
-known and said in every message, is not: it is taken off the stamps.
+known and said in every message, is not: it is taken off the stamps. This process lets what it
+hears lie until a recording is over, so that it takes no time from what it measures.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from lifting_interfaces.msg import Markers
 from numpy.typing import NDArray
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
+from rclpy.subscription import Subscription
 from std_msgs.msg import Header
 from std_srvs.srv import SetBool
 
@@ -65,7 +67,7 @@ class Station:
     nodes
         Names of its nodes.
     node
-        Node of this process.
+        Node of this process that hears the station; nobody spins it.
     logs
         Folder of the processes' output.
     """
@@ -73,7 +75,6 @@ class Station:
     def __init__(self, name: str, nodes: Iterable[str], node: Node, logs: Path) -> None:
         self.name = name
         self._logs = logs / name
-        self._node = node
         self.processes = [
             start_module(
                 n, MODULES.get(n, f'{n}.{n}_node'), self._logs, name, parameters=PARAMETERS.get(n)
@@ -83,17 +84,17 @@ class Station:
         self.player: NodeProcess | None = None
         self.sent: list[tuple[float, float]] = []
         self.judged: list[tuple[float, float]] = []
-        node.create_subscription(Markers, f'/{name}/markers', self._on_markers, qos.FRAMES,
-                                 raw=True)  # fmt: skip
-        node.create_subscription(Header, f'/{name}/judged', self._on_judged, qos.FRAMES)
+        self._markers = node.create_subscription(
+            Markers, f'/{name}/markers', _nobody, qos.FRAMES, raw=True
+        )
+        self._judgements = node.create_subscription(
+            Header, f'/{name}/judged', _nobody, qos.FRAMES, raw=True
+        )
 
-    def _on_markers(self, data: bytes, info: dict[str, int]) -> None:
-        seconds, nanoseconds = _STAMP.unpack_from(data, _CDR_HEAD)
-        self.sent.append((seconds + 1e-9 * nanoseconds, 1e-9 * info['source_timestamp']))
-
-    def _on_judged(self, message: Header, info: dict[str, int]) -> None:
-        stamp = message.stamp.sec + 1e-9 * message.stamp.nanosec
-        self.judged.append((stamp, 1e-9 * info['received_timestamp']))
+    def listen(self) -> None:
+        """Take what has come: stamps of frames with DDS' times of sending and of arrival [s]."""
+        self.sent += _taken(self._markers, 'source_timestamp')
+        self.judged += _taken(self._judgements, 'received_timestamp')
 
     def start_player(self, bag: Path) -> None:
         """Start a paused player of a recording."""
@@ -133,6 +134,21 @@ class Station:
         return latency
 
 
+def _nobody(_message: bytes) -> None:
+    """Stand for the callback of a subscription that is never spun."""
+
+
+def _taken(subscription: Subscription[Any], time_of: str) -> list[tuple[float, float]]:
+    """Stamps of the messages that lie in a subscription, each with a time that DDS has noted."""
+    taken = []
+    with subscription.handle:
+        while (one := subscription.handle.take_message(subscription.msg_type, True)) is not None:
+            data, info = one
+            seconds, nanoseconds = _STAMP.unpack_from(data, _CDR_HEAD)
+            taken.append((seconds + 1e-9 * nanoseconds, 1e-9 * info[time_of]))
+    return taken
+
+
 class Stations:
     """Stations that are measured together; every process of them ends with this context.
 
@@ -158,7 +174,7 @@ class Stations:
         )
         rclpy.init()
         self._node = Node('latency_bench')
-        # The only executor that tells the middleware's stamps.
+        self._ears = Node('latency_bench_ears')
         self._executor = SingleThreadedExecutor()
         self._executor.add_node(self._node)
         return self
@@ -183,12 +199,13 @@ class Stations:
                 process.process.wait()
         self._executor.shutdown()
         self._node.destroy_node()
+        self._ears.destroy_node()
         rclpy.try_shutdown()
 
     def add(self) -> None:
         """Start one station more and bring it up."""
         name = f'bench_{os.getpid()}_{len(self._stations) + 1}'
-        station = Station(name, self._nodes, self._node, self._logs)
+        station = Station(name, self._nodes, self._ears, self._logs)
         self._stations.append(station)
         Graph(self._node, self._executor, name, station.processes).bring_up()
 
@@ -221,8 +238,12 @@ class Stations:
         for client in clients:
             self._node.destroy_client(client)
         end = time.monotonic() + LATE
-        while time.monotonic() < end and any(s.waiting for s in self._stations):
-            self._executor.spin_once(timeout_sec=0.05)
+        while True:
+            for station in self._stations:
+                station.listen()
+            if time.monotonic() > end or not any(s.waiting for s in self._stations):
+                break
+            time.sleep(0.05)
         return [station.latencies() for station in self._stations]
 
     def _spin(self, done: Any, limit: float) -> None:
