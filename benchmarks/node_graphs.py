@@ -217,12 +217,14 @@ class Stations:
         RuntimeError
             If a player fails or frames are lost.
         """
+        services = [f'/{station.name}/player/pause' for station in self._stations]
+        # The player before would answer for the next one until all have heard that it is gone.
+        self._spin(
+            lambda: not any(self._node.count_services(name) for name in services), PLAYER_LIMIT
+        )
         for station in self._stations:
             station.start_player(bag)
-        clients = [
-            self._node.create_client(SetBool, f'/{station.name}/player/pause')
-            for station in self._stations
-        ]
+        clients = [self._node.create_client(SetBool, name) for name in services]
         self._spin(lambda: all(client.service_is_ready() for client in clients), PLAYER_LIMIT)
         futures = [client.call_async(SetBool.Request(data=False)) for client in clients]
         duration = summarise(bag).duration
