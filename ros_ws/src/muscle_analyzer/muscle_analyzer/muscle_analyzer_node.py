@@ -46,8 +46,10 @@ WAITING_LIFTS: Final = 100
 """Lifts kept until their person is known and the node is active."""
 
 LIFT_STEP: Final = 0.001
-"""Time [s] that whole lifts are worked on right after a live sample, or one step of them: over
-long before the next one, also when that comes early."""
+"""Time [s] that whole lifts are worked on between two live samples, or one step of them."""
+
+BREATH: Final = 0.002
+"""Time [s] from a live sample to that work: who waits for the sample has the cores until then."""
 
 QUIET: Final = 0.02
 """Time [s] without a live sample after which whole lifts are worked on all the time."""
@@ -89,8 +91,9 @@ class MuscleAnalyzerNode(PipelineNode):
             self.analyzer, self._lift_done, self._lift_failed, self.INPUT_ERRORS
         )
         self._last_live = -math.inf
+        self._worked = False
         self._turn = self.create_timer(
-            QUIET_STEP, self._work, clock=Clock(clock_type=ClockType.STEADY_TIME), autostart=False
+            BREATH, self._work, clock=Clock(clock_type=ClockType.STEADY_TIME), autostart=False
         )
         self._muscles = self.advertise(MuscleAnalysis, 'muscle_analysis', qos.FRAMES)
         self._spine = self.advertise(SpineLoad, 'spine_load', qos.FRAMES)
@@ -165,8 +168,10 @@ class MuscleAnalyzerNode(PipelineNode):
                 self._reaction.publish(_bytes(WrenchStamped, reaction))
         self.counts['live samples'] += len(analysis)
         self.counts['live samples with good L5-S1 load'] += analysis.good_spine_samples
-        self._queue.work(LIFT_STEP)
         self._last_live = time.monotonic()
+        self._worked = False
+        if self._queue:
+            self._turn.reset()
 
     def _on_measured_lift(self, message: MeasuredLift) -> None:
         self._wait('measured', message)
@@ -204,6 +209,9 @@ class MuscleAnalyzerNode(PipelineNode):
     def _work(self) -> None:
         if time.monotonic() - self._last_live > QUIET:
             self._queue.work(QUIET_STEP)
+        elif not self._worked:
+            self._queue.work(LIFT_STEP)
+            self._worked = True
         if not self._queue:
             self._turn.cancel()
 
