@@ -47,6 +47,9 @@ SETTLE: Final = 1.0
 """Beginning of a play that is not counted: the filters settle, the processes wake up [s]."""
 PLAYER_LIMIT: Final = 30.0
 """Time [s] for players to appear, and beyond a recording's length for them to end."""
+ACQUAINTED: Final = 0.5
+"""Time [s] for processes to hear of all of each other's topics: a server drops the answer to a
+client it has not heard of, and a reader misses the first frames of a writer."""
 LATE: Final = 10.0
 """Time [s] after the recording's end in which a frame may still be judged."""
 GENTLE: Final = 3.0
@@ -218,14 +221,12 @@ class Stations:
             If a player fails or frames are lost.
         """
         services = [f'/{station.name}/player/pause' for station in self._stations]
-        # The player before would answer for the next one until all have heard that it is gone.
-        self._spin(
-            lambda: not any(self._node.count_services(name) for name in services), PLAYER_LIMIT
-        )
         for station in self._stations:
             station.start_player(bag)
         clients = [self._node.create_client(SetBool, name) for name in services]
         self._spin(lambda: all(client.service_is_ready() for client in clients), PLAYER_LIMIT)
+        acquainted = time.monotonic() + ACQUAINTED
+        self._spin(lambda: time.monotonic() > acquainted, PLAYER_LIMIT)
         futures = [client.call_async(SetBool.Request(data=False)) for client in clients]
         duration = summarise(bag).duration
         players = [station.player for station in self._stations]

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import faulthandler
+import math
 import os
 import shutil
 import sys
@@ -16,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import rclpy
+from rclpy.client import Client
 from rclpy.executors import Executor
 from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
@@ -283,6 +285,9 @@ class _Session:
         self.state = LiveState(summary.start)
         self._view = LiveView(self.state, summary.duration, gauge_limits(summary))
         self._last = time.monotonic()
+        self._clients: dict[str, Client[Any, Any, Any]] = {}
+        # A server drops the answer to a client that it has not heard of yet: known from the start.
+        self._client(Trigger, 'motion_tracker/flush')
         for topic, message_type in FOLLOWED.items():
             profile = _QOS.get(topic, qos.RESULTS)
             node.create_subscription(message_type, topic, self._take, profile)
@@ -295,19 +300,23 @@ class _Session:
         self, service: type, name: str, processes: list[NodeProcess], timeout: float = 30.0
     ) -> None:
         """Wait until a helper process offers its service."""
-        client = self._node.create_client(service, name)
+        client = self._client(service, name)
         deadline = time.monotonic() + timeout
         while not client.service_is_ready():
             self._check(processes)
             if time.monotonic() > deadline:
                 raise SessionError(f'{name} did not appear within {timeout:g} s')
             self._executor.spin_once(timeout_sec=0.02)
-        self._node.destroy_client(client)
+
+    def _client(self, service: type, name: str) -> Client[Any, Any, Any]:
+        if name not in self._clients:
+            self._clients[name] = self._node.create_client(service, name)
+        return self._clients[name]
 
     def play(self, player: NodeProcess, recorder: NodeProcess) -> None:
         """Play to the end, have the last frames flushed and wait for all results."""
         with self._view:
-            self._call(SetBool, 'player/pause', SetBool.Request(data=False))
+            self._call(SetBool, 'player/pause', SetBool.Request(data=False), again=1.0)
             while player.process.poll() is None:
                 self._check([recorder])
                 self._step()
@@ -338,16 +347,25 @@ class _Session:
         self._executor.spin_once(timeout_sec=0.1)
         self._view.refresh()
 
-    def _call(self, service: type, name: str, request: Any, timeout: float = 30.0) -> Any:
-        client = self._node.create_client(service, name)
-        future = client.call_async(request)
-        deadline = time.monotonic() + timeout
-        while not future.done():
+    def _call(
+        self,
+        service: type,
+        name: str,
+        request: Any,
+        timeout: float = 30.0,
+        again: float = math.inf,
+    ) -> Any:
+        """Call a service; ask once more each `again` seconds if that does no harm."""
+        client = self._client(service, name)
+        began = asked = time.monotonic()
+        futures = [client.call_async(request)]
+        while not any(future.done() for future in futures):
             self._graph.check()
-            if time.monotonic() > deadline:
+            now = time.monotonic()
+            if now > began + timeout:
                 raise SessionError(f'{name} did not answer within {timeout:g} s')
+            if now > asked + again:
+                asked = now
+                futures.append(client.call_async(request))
             self._step()
-        self._node.destroy_client(client)
-        return future.result()
-
-
+        return next(future.result() for future in futures if future.done())
