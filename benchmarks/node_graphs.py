@@ -25,6 +25,7 @@ import numpy as np
 import rclpy
 from lifting_interfaces.msg import Markers
 from numpy.typing import NDArray
+from rclpy.client import Client
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.subscription import Subscription
@@ -47,9 +48,11 @@ SETTLE: Final = 1.0
 """Beginning of a play that is not counted: the filters settle, the processes wake up [s]."""
 PLAYER_LIMIT: Final = 30.0
 """Time [s] for players to appear, and beyond a recording's length for them to end."""
-ACQUAINTED: Final = 0.5
-"""Time [s] for processes to hear of all of each other's topics: a server drops the answer to a
-client it has not heard of, and a reader misses the first frames of a writer."""
+ACQUAINTED: Final = 3.5
+"""Time [s] for processes to hear of all of each other's topics: what they miss of them at first
+comes again after three."""
+AGAIN: Final = 1.0
+"""Time [s] after which a player is asked again: it drops the answer to who it has not heard of."""
 LATE: Final = 10.0
 """Time [s] after the recording's end in which a frame may still be judged."""
 GENTLE: Final = 3.0
@@ -227,7 +230,7 @@ class Stations:
         self._spin(lambda: all(client.service_is_ready() for client in clients), PLAYER_LIMIT)
         acquainted = time.monotonic() + ACQUAINTED
         self._spin(lambda: time.monotonic() > acquainted, PLAYER_LIMIT)
-        futures = [client.call_async(SetBool.Request(data=False)) for client in clients]
+        self._set_going(clients)
         duration = summarise(bag).duration
         players = [station.player for station in self._stations]
         self._spin(
@@ -237,7 +240,6 @@ class Stations:
         for player in players:
             if player is not None and player.process.returncode:
                 player.check()
-        assert all(future.done() for future in futures)
         for client in clients:
             self._node.destroy_client(client)
         end = time.monotonic() + LATE
@@ -248,6 +250,24 @@ class Stations:
                 break
             time.sleep(0.05)
         return [station.latencies() for station in self._stations]
+
+    def _set_going(self, clients: list[Client[Any, Any, Any]]) -> None:
+        """Have all players begin; ask those again whose answer was lost."""
+        waiting = {client: [client.call_async(SetBool.Request(data=False))] for client in clients}
+        end = time.monotonic() + PLAYER_LIMIT
+        while waiting and time.monotonic() < end:
+            asked = time.monotonic()
+            while waiting and time.monotonic() < asked + AGAIN:
+                self._executor.spin_once(timeout_sec=0.05)
+                waiting = {
+                    client: futures
+                    for client, futures in waiting.items()
+                    if not any(future.done() for future in futures)
+                }
+            for client, futures in waiting.items():
+                futures.append(client.call_async(SetBool.Request(data=False)))
+        if waiting:
+            raise RuntimeError(f'{len(waiting)} players do not answer')
 
     def _spin(self, done: Any, limit: float) -> None:
         end = time.monotonic() + limit

@@ -210,14 +210,7 @@ class MotionTrackerNode(PipelineNode):
         if isinstance(output, TrackedFrame):
             # First what the next node of the chain waits for.
             self._motion.publish(self._writer.body_motion(output))
-            self._joints.publish(self._writer.joint_state(output))
-            reaction = self._writer.ground_reaction(output)
-            if reaction is not None:
-                self._reaction.publish(reaction)
-            for side, publisher in ((None, self._total_cop), *enumerate(self._cop)):
-                point = self._writer.cop(output, side)
-                if point is not None:
-                    publisher.publish(point)
+            self._publish_beside(output)
             if output.message and not output.solution.ok:
                 self.report_error(f'frame not good: {output.message}')
         elif isinstance(output, DetectedEvent):
@@ -231,6 +224,20 @@ class MotionTrackerNode(PipelineNode):
             self.get_logger().info(output.text)
         elif isinstance(output, Notice):
             self.get_logger().warning(output.text)
+
+    def _publish_beside(self, frame: TrackedFrame) -> None:
+        """Publish of a frame what no other node needs, where somebody listens."""
+        if self._joints.get_subscription_count():
+            self._joints.publish(self._writer.joint_state(frame))
+        if self._reaction.get_subscription_count():
+            reaction = self._writer.ground_reaction(frame)
+            if reaction is not None:
+                self._reaction.publish(reaction)
+        for side, publisher in ((None, self._total_cop), *enumerate(self._cop)):
+            if publisher.get_subscription_count():
+                point = self._writer.cop(frame, side)
+                if point is not None:
+                    publisher.publish(point)
 
 
 def main(args: list[str] | None = None) -> None:

@@ -227,14 +227,15 @@ class _Playback:
             while True:
                 clock = now()
                 if clock >= next_tick:
-                    next_tick = max(next_tick + tick, clock)
                     self._tick(first + int((min(clock, due) - epoch) * rate))
                     if control.stopped:
                         return
                     if control.paused:
                         waited = self._wait_while_paused()
                         epoch, due = epoch + waited, due + waited
-                        continue
+                    # Between frames that come at the ticks' rate: their messages stay together.
+                    next_tick = epoch + ((now() - epoch) // tick + 1) * tick + tick // 2
+                    continue
                 ahead = due - clock
                 if ahead <= _EARLY_NS:
                     break
