@@ -16,7 +16,7 @@ import numpy as np
 from benchmarks.node_graphs import CHAIN, ROOT, Stations
 
 BAG: Final = ROOT / 'bags' / 'asymmetric_7kg'
-PLAYS: Final = 3
+PLAYS: Final = 6
 """The first warms the processes up and is not counted."""
 
 
