@@ -21,6 +21,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from muscle_analyzer.core.false_position import crossing, narrowed, whole_step
+
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
@@ -233,8 +235,8 @@ def _step_size(
     bend = 0.0
     for j in range(step.size):
         bend += 0.5 * (reserve[j] * step[j]) ** 2
-    near, near_slope, past, past_slope, last = 0.0, first_slope, 1.0, whole_slope, -1
-    size = near_slope / (near_slope - past_slope)
+    bracket = whole_step(first_slope, whole_slope, -1)
+    size = crossing(bracket)
     for _ in range(LINE_TRIALS):
         here = first_slope - size * bend
         for i in range(n_m):
@@ -242,17 +244,8 @@ def _step_size(
             here -= turn[i] * (now - before[i])
         if abs(here) <= SLOPE_SHARE * first_slope:
             break
-        if here > 0.0:
-            near, near_slope = size, here
-            if last == 1:
-                past_slope *= 0.5
-            last = 1
-        else:
-            past, past_slope = size, here
-            if last == -1:
-                near_slope *= 0.5
-            last = -1
-        size = near + (past - near) * near_slope / (near_slope - past_slope)
+        bracket = narrowed(bracket, size, here)
+        size = crossing(bracket)
     return size
 
 

@@ -35,6 +35,7 @@ from muscle_analyzer.core.dual_newton import (
     cholesky_solve,
     dot,
 )
+from muscle_analyzer.core.false_position import crossing, narrowed, whole_step
 
 Array = NDArray[np.float64]
 Places = NDArray[np.int8]
@@ -232,8 +233,8 @@ def _step_size(
         before[i] = min(max(pull[i] / problem.curvature[i], problem.lower[i]), b)
     for j in range(step.size):
         bend += 0.5 * (problem.reserve[j] * step[j]) ** 2
-    near, near_slope, past, past_slope, last = 0.0, first, 1.0, whole, 0
-    size = near_slope / (near_slope - past_slope)
+    bracket = whole_step(first, whole, 0)
+    size = crossing(bracket)
     for _ in range(LINE_TRIALS):
         for i in range(n_m):
             here[i] = pull[i] + size * turn[i]
@@ -244,17 +245,8 @@ def _step_size(
             slope -= turn[i] * (now - before[i])
         if abs(slope) <= SLOPE_SHARE * first:
             break
-        if slope > 0.0:
-            near, near_slope = size, slope
-            if last == 1:
-                past_slope *= 0.5
-            last = 1
-        else:
-            past, past_slope = size, slope
-            if last == -1:
-                near_slope *= 0.5
-            last = -1
-        size = near + (past - near) * near_slope / (near_slope - past_slope)
+        bracket = narrowed(bracket, size, slope)
+        size = crossing(bracket)
     return size
 
 
