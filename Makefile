@@ -38,8 +38,9 @@ test: lint typecheck reference-models ## checks and tests (at most 15 minutes on
 test-long: setup-dev ## the tests that take longer
 	@$(TOOL) pytest -m long --timeout=3600 $(PYTEST_ARGS)
 
-lint: setup-dev ## ruff over everything
+lint: setup-dev ## ruff over everything: rules and format
 	@$(TOOL) ruff check --quiet .
+	@$(TOOL) ruff format --check --quiet .
 
 typecheck: setup-dev ## mypy, strict, over the pure cores
 	@$(TOOL) mypy $(wildcard ros_ws/src/human_model/human_model ros_ws/src/*/*/core)

@@ -20,13 +20,11 @@ import numpy as np
 from benchmarks import muscle_motions as motions
 from benchmarks.muscle_motions import BenchMotion
 from benchmarks.muscle_opensim import OPTIONS, Referee, referee, seconds_a_frame, timed_rows
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from muscle_analyzer.core.exceptions import OpenSimError
 from muscle_analyzer.core.load_solver import LoadSolver
 from muscle_analyzer.core.opensim.process import OpenSimPython, find_opensim
-
-Array = NDArray[np.float64]
 
 ROUNDS: Final = 10
 """How often a motion is computed; the first time, which loads compiled functions, is not timed."""
@@ -111,9 +109,7 @@ def run() -> dict[str, float]:
     return figures
 
 
-def _lifting_model(
-    lifts: list[BenchMotion], python: OpenSimPython | None
-) -> dict[str, float]:
+def _lifting_model(lifts: list[BenchMotion], python: OpenSimPython | None) -> dict[str, float]:
     own = {lift.name: own_frames(lift) for lift in lifts}
     every = np.concatenate([frames.wall.ravel() for frames in own.values()])
     used = np.concatenate([frames.processor.ravel() for frames in own.values()])

@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lifting_bringup.recorded_lifts import recorded_lifts
 from muscle_analyzer.core.analyzer import MuscleAnalyzer
@@ -26,8 +25,6 @@ from muscle_analyzer.core.opensim.motion_on_model import MotionOnModel, motion_o
 from muscle_analyzer.core.opensim.setup_files import PointForce
 from muscle_analyzer.core.opensim.storage import read_storage
 from muscle_analyzer.core.osim_reader import read_osim
-
-Array = NDArray[np.float64]
 
 ROOT: Final = Path(__file__).resolve().parents[1]
 SQUATS: Final = ROOT.parent / 'shared' / 'data' / 'squats_bodyweight'

@@ -20,6 +20,7 @@ from benchmarks import opensim_timing
 from benchmarks.muscle_motions import BenchMotion
 from numpy.typing import NDArray
 
+from human_model.typing import Array
 from muscle_analyzer.core.analyzer_options import MuscleAnalyzerOptions
 from muscle_analyzer.core.joint_loads import lumbosacral_body
 from muscle_analyzer.core.opensim import setup_files as files
@@ -29,8 +30,6 @@ from muscle_analyzer.core.opensim.export import ExportOptions, export_motion
 from muscle_analyzer.core.opensim.motion_on_model import MotionOnModel
 from muscle_analyzer.core.opensim.own_side import OwnSide
 from muscle_analyzer.core.opensim.process import OpenSimPython, run_referee
-
-Array = NDArray[np.float64]
 
 OPTIONS: Final = MuscleAnalyzerOptions(force_length_velocity=True)
 COMPARED: Final = 7

@@ -24,7 +24,6 @@ from typing import Any, Final
 import numpy as np
 import rclpy
 from lifting_interfaces.msg import Markers
-from numpy.typing import NDArray
 from rclpy.client import Client
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
@@ -32,12 +31,11 @@ from rclpy.subscription import Subscription
 from std_msgs.msg import Header
 from std_srvs.srv import SetBool
 
+from human_model.typing import Array
 from lifting_bringup.graph import Graph
 from lifting_bringup.node_process import PARAMETERS, NodeProcess, discovery, start_module
 from lifting_bringup.session import summarise
 from lifting_node import qos
-
-Array = NDArray[np.float64]
 
 ROOT: Final = Path(__file__).resolve().parents[1]
 CHAIN: Final = ('muscle_analyzer', 'motion_tracker', 'injury_monitor')

@@ -17,12 +17,11 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Final
 
-import numpy as np
 from bags.simulate.group import lifting_task, simulated_lift, study_group
-from numpy.typing import NDArray
 
 from human_model.motion import Lift
 from human_model.subject import Subject
+from human_model.typing import Array
 from lift_predictor.core.maximum_weight import Weighting, maximum_weight_task
 from lift_predictor.core.pareto import (
     ParetoCurve,
@@ -35,8 +34,6 @@ from lift_predictor.core.percentile import Percentile, percentile_by_root
 from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.sagittal.starts import make_starts
 from lift_predictor.core.sagittal.task import Box
-
-Array = NDArray[np.float64]
 
 TASK: Final = 'symmetric_max'
 CORES: Final = 2

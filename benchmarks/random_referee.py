@@ -20,15 +20,13 @@ from typing import Any, Final
 
 import numpy as np
 from benchmarks.solved_lifts import random_starts
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.sagittal.grid import LiftBounds
 from lift_predictor.core.sagittal.optimiser import LiftOptimiser
 from lift_predictor.core.solvers.compiled import build_programme
 from lift_predictor.core.solvers.ipopt import LiftSolver
 from lift_predictor.core.solvers.optimum import Start
-
-Array = NDArray[np.float64]
 
 N_STARTS: Final = 20
 MAX_ITERATIONS: Final = 500

@@ -17,14 +17,12 @@ from typing import Final
 
 import numpy as np
 from benchmarks.random_tasks import plan_random
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.sagittal.grid import Grid, LiftBounds
 from lift_predictor.core.sagittal.optimiser import LiftOptimiser
 from lift_predictor.core.sagittal.parameters import JOINTS
 from lift_predictor.core.solvers.optimum import Optimum, Start, best_objective
-
-Array = NDArray[np.float64]
 
 SEED: Final = 7
 N_TASKS: Final = 98

@@ -59,8 +59,10 @@ class Box:
             f'{escape(self.name)}</text>',
         ]
         for i, line in enumerate(self.lines):
-            parts.append(f'<text class="what" x="{middle}" y="{top + 19 + 16 * i}" '
-                         f'text-anchor="middle">{escape(line)}</text>')
+            parts.append(
+                f'<text class="what" x="{middle}" y="{top + 19 + 16 * i}" '
+                f'text-anchor="middle">{escape(line)}</text>'
+            )
         return '\n'.join(parts)
 
 
@@ -107,8 +109,9 @@ BOXES = (
     Box(360, 476, 260, 64, 'node', 'injury_monitor', ('limits, alarms, lifting equation',)),
     Box(60, 570, 260, 50, 'end', 'lift run', ('live view, report.html, results.mcap',)),
     Box(660, 570, 300, 50, 'end', 'the plant', ('operator acknowledges; alarm journal',)),
-    Box(60, 660, 260, 64, 'node', 'lifting_visualization',
-        ('person, loads, optimal lift to see',)),
+    Box(
+        60, 660, 260, 64, 'node', 'lifting_visualization', ('person, loads, optimal lift to see',)
+    ),
     Box(660, 667, 300, 50, 'end', 'RViz, Foxglove', ('or any other tool of ROS 2',)),
 )
 EDGES = (
@@ -161,19 +164,21 @@ LABELS = (
 def draw() -> str:
     """Return the figure as SVG text."""
     parts = [part.svg() for part in (*EDGES, *BOXES, *LABELS)]
-    return '\n'.join([
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" '
-        f'width="{WIDTH}" height="{HEIGHT}" role="img">',
-        '<title>Data flow: recording, player, five nodes, results</title>',
-        f'<style>{STYLE}</style>',
-        '<defs><marker id="head" viewBox="0 0 10 10" refX="9" refY="5" markerWidth="8" '
-        'markerHeight="8" orient="auto"><path class="head" d="M0,0 L10,5 L0,10 z"/></marker>'
-        '</defs>',
-        f'<rect class="page" width="{WIDTH}" height="{HEIGHT}" rx="10"/>',
-        *parts,
-        '</svg>',
-        '',
-    ])
+    return '\n'.join(
+        [
+            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" '
+            f'width="{WIDTH}" height="{HEIGHT}" role="img">',
+            '<title>Data flow: recording, player, five nodes, results</title>',
+            f'<style>{STYLE}</style>',
+            '<defs><marker id="head" viewBox="0 0 10 10" refX="9" refY="5" markerWidth="8" '
+            'markerHeight="8" orient="auto"><path class="head" d="M0,0 L10,5 L0,10 z"/></marker>'
+            '</defs>',
+            f'<rect class="page" width="{WIDTH}" height="{HEIGHT}" rx="10"/>',
+            *parts,
+            '</svg>',
+            '',
+        ]
+    )
 
 
 if __name__ == '__main__':

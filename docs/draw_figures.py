@@ -66,20 +66,26 @@ def disc_frame() -> Figure:
     normal = leant(default)[:, 1]
     reaction = np.concatenate([np.zeros(3), RESULTANT * normal])
     lean = np.arange(default - 30.0, default + 30.5, 0.5)
-    loads = [disc_load(reaction, disc_rotation(DiscOption.VERTEBRAL, leant(angle), np.eye(3), 0.0))
-             for angle in lean]
+    loads = [
+        disc_load(reaction, disc_rotation(DiscOption.VERTEBRAL, leant(angle), np.eye(3), 0.0))
+        for angle in lean
+    ]
     figure = Figure(figsize=(7.2, 3.4))
     axes = figure.subplots()
     for name, colour in (('compression', BLUE), ('anterior_shear', ORANGE)):
         values = [getattr(load, name) for load in loads]
         axes.plot(lean, values, color=colour)
         axes.text(lean[-1] + 0.8, values[-1], name.replace('_', ' '), color=colour, va='center')
-    for limit, words in ((1000.0, 'shear limit, up to 100 loads a day'),
-                         (700.0, 'shear limit, above 100 loads a day')):
+    for limit, words in (
+        (1000.0, 'shear limit, up to 100 loads a day'),
+        (700.0, 'shear limit, above 100 loads a day'),
+    ):
         axes.axhline(limit, color=ORANGE, linestyle='--', linewidth=0.9)
         axes.text(lean[0], limit + 30.0, words, color=ORANGE, fontsize=8)
-    options = {default: 'bruno2015', disc_parameters(DiscOption.VERTEBRAL)['forward_tilt']:
-               'vertebral'}
+    options = {
+        default: 'bruno2015',
+        disc_parameters(DiscOption.VERTEBRAL)['forward_tilt']: 'vertebral',
+    }
     for angle, name in options.items():
         axes.axvline(angle, color=GREY, linestyle=':', linewidth=1.0)
         axes.text(angle + 0.5, -1250.0, name, color=GREY, fontsize=8)
@@ -115,13 +121,22 @@ def angle_errors(name: str) -> dict[str, float]:
         time = stamp(motion) - start + motion.time_from_start
         found = motion.position.reshape(len(time), -1)
         error = {
-            str(coordinate): np.degrees(np.sqrt(np.mean(np.square(
-                found[:, motion.coordinate_names.index(coordinate)]
-                - np.interp(time, truth['time'], truth['position'][:, i])))))
+            str(coordinate): np.degrees(
+                np.sqrt(
+                    np.mean(
+                        np.square(
+                            found[:, motion.coordinate_names.index(coordinate)]
+                            - np.interp(time, truth['time'], truth['position'][:, i])
+                        )
+                    )
+                )
+            )
             for i, coordinate in enumerate(truth['coordinates'])
         }
-    return {joint: max(value for key, value in error.items() if key.startswith(joint))
-            for joint in JOINTS}
+    return {
+        joint: max(value for key, value in error.items() if key.startswith(joint))
+        for joint in JOINTS
+    }
 
 
 def tracker_error() -> Figure:
@@ -131,11 +146,17 @@ def tracker_error() -> Figure:
     for k, name in enumerate(LIFTS):
         errors = angle_errors(name)
         print(name, {joint: round(float(value), 2) for joint, value in errors.items()})
-        axes.bar(np.arange(len(JOINTS)) + 0.2 * (k - 1.5), list(errors.values()), 0.18,
-                 label=name.replace('_', ' '), color=(BLUE, '#5b93d1', '#9dbfe4', ORANGE)[k])
+        axes.bar(
+            np.arange(len(JOINTS)) + 0.2 * (k - 1.5),
+            list(errors.values()),
+            0.18,
+            label=name.replace('_', ' '),
+            color=(BLUE, '#5b93d1', '#9dbfe4', ORANGE)[k],
+        )
     axes.axhline(ANGLE_LIMIT, color=GREY, linestyle='--', linewidth=0.9)
-    axes.text(len(JOINTS) - 0.5, ANGLE_LIMIT + 0.03, 'agreed limit', color=GREY, ha='right',
-              fontsize=8)
+    axes.text(
+        len(JOINTS) - 0.5, ANGLE_LIMIT + 0.03, 'agreed limit', color=GREY, ha='right', fontsize=8
+    )
     axes.set_xticks(np.arange(len(JOINTS)), list(JOINTS.values()), fontsize=8)
     axes.set_ylabel('rms error [deg]')
     axes.set_ylim(0.0, 1.25 * ANGLE_LIMIT)
@@ -149,22 +170,30 @@ def reference_loads(folder: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     lines = (folder / 'joint_reaction_loads.sto').read_text(encoding='utf-8').splitlines()
     first = lines.index('endheader') + 1
     names = lines[first].split('\t')
-    rows = np.array([[float(word) for word in line.split()] for line in lines[first + 1:]])
+    rows = np.array([[float(word) for word in line.split()] for line in lines[first + 1 :]])
     columns = [names.index(f'L5_S1_IVDjnt_on_lumbar5_in_lumbar5_f{axis}') for axis in 'xyz']
     frame = disc_rotation(DiscOption.BRUNO2015, np.eye(3), np.eye(3), 0.0)
     loads = [disc_load(np.concatenate([np.zeros(3), force]), frame) for force in rows[:, columns]]
-    return (rows[:, 0], np.array([load.compression for load in loads]),
-            np.array([load.anterior_shear for load in loads]))
+    return (
+        rows[:, 0],
+        np.array([load.compression for load in loads]),
+        np.array([load.anterior_shear for load in loads]),
+    )
 
 
 def squats(folder: Path) -> Figure:
     """Live L5-S1 load of the real squats from markers, against OpenSim's."""
     bag = RESULTS / 'squats_bag'
     shutil.rmtree(bag, ignore_errors=True)
-    import_recording(ImportOptions(
-        markers=folder / 'squats1.trc', forces=folder / 'squats1_grf.mot',
-        static=folder / 'static1.trc', output=bag,
-        subject=ROOT / 'bags' / 'subjects' / 'squats_bodyweight.yaml'))
+    import_recording(
+        ImportOptions(
+            markers=folder / 'squats1.trc',
+            forces=folder / 'squats1_grf.mot',
+            static=folder / 'static1.trc',
+            output=bag,
+            subject=ROOT / 'bags' / 'subjects' / 'squats_bodyweight.yaml',
+        )
+    )
     results = results_of(bag)
     start = stamp(messages(results, 'subject')[0])
     live = [load for load in messages(results, 'spine_load') if load.source == LIVE]
@@ -172,17 +201,29 @@ def squats(folder: Path) -> Figure:
     figure = Figure(figsize=(7.2, 4.2))
     rows = figure.subplots(2, 1, sharex=True)
     reference = reference_loads(folder / 'opensim46_reference')
-    for axes, name, known in zip(rows, ('compression', 'anterior_shear'), reference[1:],
-                                 strict=True):
+    for axes, name, known in zip(
+        rows, ('compression', 'anterior_shear'), reference[1:], strict=True
+    ):
         values = np.array([getattr(load, name)[0] for load in live])
         axes.plot(time, values, color=BLUE, linewidth=1.2, label='from the markers, live')
-        axes.plot(reference[0], known, 'o', color=ORANGE, markersize=4,
-                  label='OpenSim 4.6, its own inverse kinematics')
+        axes.plot(
+            reference[0],
+            known,
+            'o',
+            color=ORANGE,
+            markersize=4,
+            label='OpenSim 4.6, its own inverse kinematics',
+        )
         axes.set_ylabel(f'{name.replace("_", " ")} [N]')
         at = np.interp(reference[0], time, values)
         print(f'{name}: peak {at.max():.0f} N against {known.max():.0f} N at its instants')
-    figure.legend(*rows[0].get_legend_handles_labels(), frameon=False, fontsize=8, ncols=2,
-                  loc='upper center')
+    figure.legend(
+        *rows[0].get_legend_handles_labels(),
+        frameon=False,
+        fontsize=8,
+        ncols=2,
+        loc='upper center',
+    )
     rows[1].set_xlabel('time [s]')
     rows[0].set_xlim(0.0, 6.0)
     return figure

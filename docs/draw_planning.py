@@ -120,9 +120,7 @@ def same_task_in_space(
     c, s = np.cos(turns), np.sin(turns)
     offset = np.stack((c * away - s * aside, s * away + c * aside, np.full(2, up)), axis=1)
     centres = hands.mean(axis=1) + offset
-    start, end = (
-        (float(x), float(y), max(float(z), 0.5 * size[2])) for x, y, z in centres
-    )
+    start, end = ((float(x), float(y), max(float(z), 0.5 * size[2])) for x, y, z in centres)
     return PlanTask(
         recorded.lift_id, float(recorded.bounds.box_mass[0]), size, start, end, (0.0, 0.0),
         recorded.duration, *styles, (float(away), float(up)),

@@ -76,38 +76,56 @@ def validate(enumerate_too: bool) -> Validation:
         begin = time.perf_counter()
         found[name] = method(predictor, lift, box)
         seconds[name] = time.perf_counter() - begin
-        print(f'z_score by {name}: {found[name].z_score:.4f}, {len(found[name].tried)} '
-              f'predictions, {seconds[name]:.2f} s')
+        print(
+            f'z_score by {name}: {found[name].z_score:.4f}, {len(found[name].tried)} '
+            f'predictions, {seconds[name]:.2f} s'
+        )
     predictor.configure(replace(subject, strength_z=found['root'].z_score))
     task = maximum_weight_task(predictor, lift, box)
     starts = make_starts(task, predictor.programme.grid.spline)
     heaviest = heaviest_box(predictor, task, starts)
     moo = solve_maximum_weight(predictor, task, starts, Weighting(), heaviest)
-    return Validation(lift, found['root'], found.get('enumeration'),
-                      {WITH: moo, WITHOUT: heaviest})
+    return Validation(
+        lift, found['root'], found.get('enumeration'), {WITH: moo, WITHOUT: heaviest}
+    )
 
 
 def print_tables(known: Validation) -> None:
     """Print tables 2.4 and 2.5, and the table of the maximum weight."""
     print('| | measured | predicted | error |\n|---|---|---|---|')
-    rows = {f'{name}, z = {known.root.z_score:.3f}': result.weight
-            for name, result in known.results.items()}
+    rows = {
+        f'{name}, z = {known.root.z_score:.3f}': result.weight
+        for name, result in known.results.items()
+    }
     if known.enumeration is not None:
         rows[f'with MOO, z = {known.enumeration.z_score:.2f} by enumeration'] = (
-            known.enumeration.predicted)
+            known.enumeration.predicted
+        )
     for name, weight in rows.items():
         measured = known.root.measured
         print(f'| {name} | {measured:.2f} N | {weight:.2f} N | {weight - measured:+.2f} N |')
     print('| | RMSE w/ | RMSE w/o | r w/ | r w/o |\n|---|---|---|---|---|')
     both = [result.comparison for result in known.results.values()]
-    lines = [(f'{joint} [deg]', [c.joint_rmse[j] for c in both],
-              [c.joint_pearson[j] for c in both]) for j, joint in enumerate(COMPARED_JOINTS)]
+    lines = [
+        (f'{joint} [deg]', [c.joint_rmse[j] for c in both], [c.joint_pearson[j] for c in both])
+        for j, joint in enumerate(COMPARED_JOINTS)
+    ]
     lines.append(('sum of joints [deg]', [c.joint_rmse.sum() for c in both], None))
     for name in ('vertical', 'horizontal'):
-        lines.append((f'{name} GRF [N]', [getattr(c, f'{name}_force_rmse') for c in both],
-                      [getattr(c, f'{name}_force_pearson') for c in both]))
-    lines.append(('box weight [N]', [abs(r.weight - known.root.measured)
-                                     for r in known.results.values()], None))
+        lines.append(
+            (
+                f'{name} GRF [N]',
+                [getattr(c, f'{name}_force_rmse') for c in both],
+                [getattr(c, f'{name}_force_pearson') for c in both],
+            )
+        )
+    lines.append(
+        (
+            'box weight [N]',
+            [abs(r.weight - known.root.measured) for r in known.results.values()],
+            None,
+        )
+    )
     for name, rmse, r in lines:
         ends = ['', ''] if r is None else [f'{value:.3f}' for value in r]
         print(f'| {name} | {rmse[0]:.2f} | {rmse[1]:.2f} | {ends[0]} | {ends[1]} |')
@@ -138,8 +156,14 @@ def errors(found: Study) -> Figure:
         axes.plot(shares, case.error.total, color=GREY, linewidth=0.6, alpha=0.6)
     axes.plot(shares, found.mean_error, 'o-', color=BLUE, markersize=4, label='mean of 12 men')
     axes.axvline(found.best.effort, color=ORANGE, linestyle='--', linewidth=1.0)
-    axes.text(found.best.effort + 0.01, axes.get_ylim()[0], f'least at {found.best.effort:.2f}',
-              color=ORANGE, fontsize=8, va='bottom')
+    axes.text(
+        found.best.effort + 0.01,
+        axes.get_ylim()[0],
+        f'least at {found.best.effort:.2f}',
+        color=ORANGE,
+        fontsize=8,
+        va='bottom',
+    )
     axes.set_xlabel('weighting of the effort, w1')
     axes.set_ylabel('total error (2.24)')
     axes.legend(frameon=False, fontsize=8)
@@ -148,32 +172,52 @@ def errors(found: Study) -> Figure:
 
 def snapshots(known: Validation) -> Figure:
     """Postures of the recorded lift and both predictions (figure 2.6)."""
-    lifts = {RECORDED: known.lift.window, **{
-        f'{name}: {result.weight:.0f} N': result.prediction.lift.motion
-        for name, result in known.results.items()}}
+    lifts = {
+        RECORDED: known.lift.window,
+        **{
+            f'{name}: {result.weight:.0f} N': result.prediction.lift.motion
+            for name, result in known.results.items()
+        },
+    }
     figure = Figure(figsize=(7.6, 6.6))
     rows = figure.subplots(len(lifts), 1, sharex=True)
-    for axes, (name, motion), colour in zip(rows, lifts.items(), (GREY, BLUE, ORANGE),
-                                           strict=True):
+    for axes, (name, motion), colour in zip(
+        rows, lifts.items(), (GREY, BLUE, ORANGE), strict=True
+    ):
         for k, share in enumerate(SNAPSHOTS):
             sample = round(share * (len(motion) - 1))
             shift = 0.95 * k
             body = np.array([motion.point(point)[sample] for point in CHAIN])
-            axes.plot(body[:, 0] + shift, body[:, 2], '.-', color=colour, linewidth=1.6,
-                      markersize=4)
-            axes.plot(*(motion.point('head')[sample][[0, 2]] + (shift, 0.0)), 'o', color=colour,
-                      markersize=9)
+            axes.plot(
+                body[:, 0] + shift, body[:, 2], '.-', color=colour, linewidth=1.6, markersize=4
+            )
+            axes.plot(
+                *(motion.point('head')[sample][[0, 2]] + (shift, 0.0)),
+                'o',
+                color=colour,
+                markersize=9,
+            )
             box = motion.box_position[sample]
             depth, _, height = lifting_task(TASK).box_size
-            axes.add_patch(mpl.patches.Rectangle(
-                (box[0] - depth / 2 + shift, box[2] - height / 2), depth, height, fill=False,
-                edgecolor='black', linewidth=0.9))
+            axes.add_patch(
+                mpl.patches.Rectangle(
+                    (box[0] - depth / 2 + shift, box[2] - height / 2),
+                    depth,
+                    height,
+                    fill=False,
+                    edgecolor='black',
+                    linewidth=0.9,
+                )
+            )
         axes.axhline(0.0, color='black', linewidth=0.8)
         axes.set_aspect('equal')
         axes.set_title(name, fontsize=9, loc='left')
         axes.set_yticks([])
-        axes.set_xticks([0.95 * k for k in range(len(SNAPSHOTS))],
-                        [f'{100 * share:.0f} %' for share in SNAPSHOTS], fontsize=8)
+        axes.set_xticks(
+            [0.95 * k for k in range(len(SNAPSHOTS))],
+            [f'{100 * share:.0f} %' for share in SNAPSHOTS],
+            fontsize=8,
+        )
         axes.grid(visible=False)
     figure.tight_layout()
     return figure
@@ -200,8 +244,13 @@ def profiles(known: Validation) -> Figure:
         total = motion.ground_force.sum(axis=1)
         grid[6].plot(at, total[:, 2], color=colour)
         grid[7].plot(at, total[:, 0], color=colour)
-    figure.legend(*grid[0].get_legend_handles_labels(), frameon=False, fontsize=8, ncols=3,
-                  loc='upper center')
+    figure.legend(
+        *grid[0].get_legend_handles_labels(),
+        frameon=False,
+        fontsize=8,
+        ncols=3,
+        loc='upper center',
+    )
     figure.tight_layout(rect=(0.0, 0.0, 1.0, 0.97))
     return figure
 
@@ -220,8 +269,10 @@ def print_group(found: Study) -> None:
         who = case.subject
         best = weightings()[int(np.nanargmin(case.error.total))].effort
         ends = ', '.join(f'{case.weight[k]:.0f}' for k in (0, 3, 20))
-        print(f'| {number} | {who.mass:.1f} | {who.stature:.3f} | {who.strength_z:.2f} | {ends} | '
-              f'{best:.2f} |')
+        print(
+            f'| {number} | {who.mass:.1f} | {who.stature:.3f} | {who.strength_z:.2f} | {ends} | '
+            f'{best:.2f} |'
+        )
     print('mean total error', np.round(found.mean_error, 3))
     solved = sum(case.solved for case in found.cases)
     print(f'best w1 = {found.best.effort:.2f}; {solved} of 252 solved in {found.seconds:.2f} s')
@@ -231,8 +282,9 @@ def main() -> None:
     """Draw the figures and print the tables."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--no-group', action='store_true', help='leave out the study of 12 men')
-    parser.add_argument('--no-enumeration', action='store_true',
-                        help='find the strength by the root search only')
+    parser.add_argument(
+        '--no-enumeration', action='store_true', help='find the strength by the root search only'
+    )
     options = parser.parse_args()
     mpl.use('Agg')
     with mpl.rc_context(STYLE):

@@ -18,11 +18,23 @@ def main() -> int:
     """Run colcon; return its exit code."""
     work = ROOT / 'build' / 'colcon'
     command = [
-        str(VENV / 'bin' / 'colcon'), '--log-base', str(work / 'log'), 'build',
-        '--base-paths', str(ROOT / 'ros_ws'),
-        '--build-base', str(work / 'build'), '--install-base', str(work / 'install'),
-        '--cmake-args', '-G', 'Ninja', '-DCMAKE_BUILD_TYPE=', '-DCMAKE_C_FLAGS=-O1',
-        '-DCMAKE_CXX_FLAGS=-O1', f'-DPython3_EXECUTABLE={VENV / "bin" / "python"}',
+        str(VENV / 'bin' / 'colcon'),
+        '--log-base',
+        str(work / 'log'),
+        'build',
+        '--base-paths',
+        str(ROOT / 'ros_ws'),
+        '--build-base',
+        str(work / 'build'),
+        '--install-base',
+        str(work / 'install'),
+        '--cmake-args',
+        '-G',
+        'Ninja',
+        '-DCMAKE_BUILD_TYPE=',
+        '-DCMAKE_C_FLAGS=-O1',
+        '-DCMAKE_CXX_FLAGS=-O1',
+        f'-DPython3_EXECUTABLE={VENV / "bin" / "python"}',
         '-DBUILD_TESTING=OFF',
     ]
     return subprocess.run(command, env=build_environment(VENV), cwd=ROOT, check=False).returncode

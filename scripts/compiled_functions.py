@@ -31,8 +31,11 @@ def remove_numba_caches(sources: Path) -> int:
     Numba compiles a function anew when its own file changed, but not when a function that it
     calls changed in another file: after an edit it would go on with the old callee.
     """
-    files = [path for pattern in ('*.nbi', '*.nbc')
-             for path in sources.glob(f'**/__pycache__/{pattern}')]
+    files = [
+        path
+        for pattern in ('*.nbi', '*.nbc')
+        for path in sources.glob(f'**/__pycache__/{pattern}')
+    ]
     for path in files:
         path.unlink(missing_ok=True)
     return len(files)

@@ -42,8 +42,13 @@ def localise_cmake_files(venv: Path) -> int:
         Number of files changed.
     """
     query = "import numpy, sysconfig; print(numpy.get_include(), sysconfig.get_path('include'))"
-    answer = subprocess.run([str(venv / 'bin' / 'python'), '-c', query], check=True, text=True,
-                            stdout=subprocess.PIPE, env=clean_environment()).stdout
+    answer = subprocess.run(
+        [str(venv / 'bin' / 'python'), '-c', query],
+        check=True,
+        text=True,
+        stdout=subprocess.PIPE,
+        env=clean_environment(),
+    ).stdout
     numpy_include, python_include = answer.split()
     changed = 0
     for path in (venv / 'share').glob('*/cmake/*.cmake'):
@@ -86,10 +91,22 @@ def build(source: Path, work: Path, venv: Path) -> None:
     work.mkdir(parents=True)
     jobs = os.environ.get('CMAKE_BUILD_PARALLEL_LEVEL', str(os.cpu_count() or 1))
     commands = [
-        ['cmake', '-S', str(source), '-B', str(work), '-G', 'Ninja',
-         '-DCMAKE_BUILD_TYPE=', '-DCMAKE_C_FLAGS=-O1', '-DCMAKE_CXX_FLAGS=-O1',
-         f'-DCMAKE_INSTALL_PREFIX={venv}', '-DCMAKE_INSTALL_LIBDIR=lib',
-         f'-DPython3_EXECUTABLE={venv / "bin" / "python"}', '-DBUILD_TESTING=OFF'],
+        [
+            'cmake',
+            '-S',
+            str(source),
+            '-B',
+            str(work),
+            '-G',
+            'Ninja',
+            '-DCMAKE_BUILD_TYPE=',
+            '-DCMAKE_C_FLAGS=-O1',
+            '-DCMAKE_CXX_FLAGS=-O1',
+            f'-DCMAKE_INSTALL_PREFIX={venv}',
+            '-DCMAKE_INSTALL_LIBDIR=lib',
+            f'-DPython3_EXECUTABLE={venv / "bin" / "python"}',
+            '-DBUILD_TESTING=OFF',
+        ],
         ['cmake', '--build', str(work), '--parallel', jobs],
         ['cmake', '--install', str(work)],
     ]
@@ -100,8 +117,13 @@ def build(source: Path, work: Path, venv: Path) -> None:
                 remove_installed(manifest)
             output.write(f'$ {" ".join(command)}\n')
             output.flush()
-            result = subprocess.run(command, stdout=output, stderr=subprocess.STDOUT,
-                                    env=build_environment(venv), check=False)
+            result = subprocess.run(
+                command,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                env=build_environment(venv),
+                check=False,
+            )
             if result.returncode:
                 output.flush()
                 sys.stderr.write(''.join(log.read_text().splitlines(keepends=True)[-40:]))

@@ -30,8 +30,19 @@ def resolve(inputs: list[Path], constraints: str) -> dict[str, str]:
     with tempfile.NamedTemporaryFile('w', suffix='.txt') as constraint_file:
         constraint_file.write(constraints)
         constraint_file.flush()
-        command = [sys.executable, '-m', 'pip', 'install', '--quiet', '--dry-run',
-                   '--ignore-installed', '--report', '-', '--constraint', constraint_file.name]
+        command = [
+            sys.executable,
+            '-m',
+            'pip',
+            'install',
+            '--quiet',
+            '--dry-run',
+            '--ignore-installed',
+            '--report',
+            '-',
+            '--constraint',
+            constraint_file.name,
+        ]
         for path in inputs:
             command += ['--requirement', str(path)]
         report = json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)
@@ -49,7 +60,7 @@ def main() -> None:
     constraints = ''.join(f'{key}=={value}\n' for key, value in everything.items())
     written: set[str] = set()
     for index, name in enumerate(GROUPS):
-        needed = resolve(inputs[:index + 1], constraints)
+        needed = resolve(inputs[: index + 1], constraints)
         new = {key: value for key, value in needed.items() if key not in written}
         lines = [f'{key}=={value}\n' for key, value in sorted(new.items())]
         (REQUIREMENTS / f'{name}.txt').write_text(HEADER.format(name=name) + ''.join(lines))

@@ -65,8 +65,16 @@ def run(*command: str | Path) -> None:
 
 def pip_install(*arguments: str | Path) -> None:
     """Install packages into the environment."""
-    run(VENV / 'bin' / 'python', '-m', 'pip', 'install', '--quiet', '--no-input',
-        '--disable-pip-version-check', *arguments)
+    run(
+        VENV / 'bin' / 'python',
+        '-m',
+        'pip',
+        'install',
+        '--quiet',
+        '--no-input',
+        '--disable-pip-version-check',
+        *arguments,
+    )
 
 
 def venv_version() -> str:
@@ -83,8 +91,9 @@ def venv_version() -> str:
 
 def make_venv() -> None:
     """Make the virtual environment with the Python that find_python.sh chooses."""
-    finder = subprocess.run(['sh', str(SCRIPTS / 'find_python.sh')], check=False,
-                            stdout=subprocess.PIPE, text=True)
+    finder = subprocess.run(
+        ['sh', str(SCRIPTS / 'find_python.sh')], check=False, stdout=subprocess.PIPE, text=True
+    )
     if finder.returncode:
         raise SetUpError('no usable Python (see above)')
     python = finder.stdout.strip()
@@ -125,10 +134,13 @@ def build_tf_message() -> None:
 
 def interface_digest(package: Path, runtime: str) -> str:
     """Return the digest of all that an interface package is built from."""
-    files = [path for folder in ('msg', 'srv', 'action')
-             for path in (package / folder).glob('*')]
-    files += [package / 'CMakeLists.txt', package / 'package.xml',
-              SCRIPTS / 'interfaces.py', REQUIREMENTS / 'build.txt']
+    files = [path for folder in ('msg', 'srv', 'action') for path in (package / folder).glob('*')]
+    files += [
+        package / 'CMakeLists.txt',
+        package / 'package.xml',
+        SCRIPTS / 'interfaces.py',
+        REQUIREMENTS / 'build.txt',
+    ]
     return digest(files, runtime)
 
 
@@ -141,8 +153,10 @@ def install_workspace() -> None:
     """Put the Python packages of ros_ws/src and the lift command into the environment."""
     say('linking the packages of ros_ws/src')
     site_packages = next((VENV / 'lib').glob('python3.*')) / 'site-packages'
-    lines = [*map(str, python_packages()),
-             "import os, sys; os.environ.setdefault('AMENT_PREFIX_PATH', sys.prefix)"]
+    lines = [
+        *map(str, python_packages()),
+        "import os, sys; os.environ.setdefault('AMENT_PREFIX_PATH', sys.prefix)",
+    ]
     (site_packages / 'lift_monitor_workspace.pth').write_text('\n'.join(lines) + '\n')
     index = VENV / 'share' / 'ament_index' / 'resource_index' / 'packages'
     index.mkdir(parents=True, exist_ok=True)
@@ -156,7 +170,7 @@ def install_workspace() -> None:
         '#!/bin/sh\n'
         '# Starts the lift command; a ROS 2 installation sourced in this shell stays out of it.\n'
         f"exec '{VENV}/bin/python' -E -s -S '{SCRIPTS}/clean_environment.py' "
-        f"'{VENV}/bin/python' -m lifting_bringup.cli \"$@\"\n"
+        f'\'{VENV}/bin/python\' -m lifting_bringup.cli "$@"\n'
     )
     command.chmod(0o755)
 
@@ -185,8 +199,9 @@ def set_up(dev: bool) -> None:
     wanted = os.environ.get('PYTHON', '')
     if version and wanted:
         query = 'import sys; print("%d.%d" % sys.version_info[:2])'
-        answer = subprocess.run([wanted, '-I', '-c', query], check=False, text=True,
-                                stdout=subprocess.PIPE)
+        answer = subprocess.run(
+            [wanted, '-I', '-c', query], check=False, text=True, stdout=subprocess.PIPE
+        )
         version = version if answer.stdout.strip() == version else ''
     place = Stamp(STAMPS / 'place', str(ROOT))
     if place.path.exists() and not place.is_current():

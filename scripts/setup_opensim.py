@@ -43,8 +43,20 @@ def main() -> int:
         shutil.rmtree(VENV, ignore_errors=True)
         run(sys.executable, '-m', 'venv', VENV)
         python = VENV / 'bin' / 'python'
-        run(python, '-m', 'pip', 'install', '--quiet', '--no-input', '--only-binary=:all:',
-            '--disable-pip-version-check', '--requirement', wheel, '--constraint', versions)
+        run(
+            python,
+            '-m',
+            'pip',
+            'install',
+            '--quiet',
+            '--no-input',
+            '--only-binary=:all:',
+            '--disable-pip-version-check',
+            '--requirement',
+            wheel,
+            '--constraint',
+            versions,
+        )
         found = run(python, '-I', '-c', QUERY).split()[-1]
     except subprocess.CalledProcessError:
         shutil.rmtree(VENV, ignore_errors=True)

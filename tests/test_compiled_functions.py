@@ -39,8 +39,10 @@ def test_only_compilations_of_numba_are_removed(script, tmp_path):
 
 
 def test_the_repository_has_compiled_sources_in_three_packages(script):
-    packages = {path.relative_to(ROOT / 'ros_ws' / 'src').parts[0]
-                for path in script.numba_sources(ROOT / 'ros_ws' / 'src')}
+    packages = {
+        path.relative_to(ROOT / 'ros_ws' / 'src').parts[0]
+        for path in script.numba_sources(ROOT / 'ros_ws' / 'src')
+    }
     assert packages == {'human_model', 'motion_tracker', 'muscle_analyzer'}
 
 

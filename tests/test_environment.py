@@ -32,9 +32,13 @@ def sourced_environment(prefix: Path) -> dict[str, str]:
     (site_packages / 'rclpy' / '__init__.py').write_text('FOREIGN = True\n')
     library_path = os.pathsep.join([f'{prefix}/lib', '/opt/vendor/lib'])
     foreign = {
-        'AMENT_PREFIX_PATH': str(prefix), 'CMAKE_PREFIX_PATH': str(prefix),
-        'PYTHONPATH': str(site_packages), 'LD_LIBRARY_PATH': library_path,
-        'ROS_DISTRO': 'jazzy', 'ROS_DOMAIN_ID': '7', 'RMW_IMPLEMENTATION': 'rmw_cyclonedds_cpp',
+        'AMENT_PREFIX_PATH': str(prefix),
+        'CMAKE_PREFIX_PATH': str(prefix),
+        'PYTHONPATH': str(site_packages),
+        'LD_LIBRARY_PATH': library_path,
+        'ROS_DISTRO': 'jazzy',
+        'ROS_DOMAIN_ID': '7',
+        'RMW_IMPLEMENTATION': 'rmw_cyclonedds_cpp',
         'PATH': f'{prefix}/bin{os.pathsep}{os.environ["PATH"]}',
     }
     return {**os.environ, **foreign}
@@ -60,10 +64,18 @@ def test_every_requirement_is_locked(name: str) -> None:
 
 def test_sourced_ros_stays_out(tmp_path: Path) -> None:
     environment = sourced_environment(tmp_path / 'jazzy')
-    query = ('import os, rclpy; print(hasattr(rclpy, "FOREIGN"), os.environ["ROS_DOMAIN_ID"], '
-             '"RMW_IMPLEMENTATION" in os.environ, os.environ["LD_LIBRARY_PATH"])')
-    result = subprocess.run([*CLEAN, sys.executable, '-c', query], env=environment, check=True,
-                            text=True, stdout=subprocess.PIPE, timeout=60)
+    query = (
+        'import os, rclpy; print(hasattr(rclpy, "FOREIGN"), os.environ["ROS_DOMAIN_ID"], '
+        '"RMW_IMPLEMENTATION" in os.environ, os.environ["LD_LIBRARY_PATH"])'
+    )
+    result = subprocess.run(
+        [*CLEAN, sys.executable, '-c', query],
+        env=environment,
+        check=True,
+        text=True,
+        stdout=subprocess.PIPE,
+        timeout=60,
+    )
     foreign, domain, middleware, library_path = result.stdout.split()
     assert (foreign, domain, middleware) == ('False', '7', 'False')
     assert '/opt/vendor/lib' in library_path.split(os.pathsep)
@@ -79,23 +91,35 @@ def test_exit_code_passes_through() -> None:
 def test_second_set_up_does_nothing() -> None:
     command = ['make', '--no-print-directory', 'setup-dev']
     subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.DEVNULL, timeout=850)
-    second = subprocess.run(command, cwd=ROOT, check=True, text=True, stdout=subprocess.PIPE,
-                            timeout=30)
+    second = subprocess.run(
+        command, cwd=ROOT, check=True, text=True, stdout=subprocess.PIPE, timeout=30
+    )
     assert second.stdout == ''
 
 
 def test_unusable_python_is_named() -> None:
-    result = subprocess.run(['sh', str(SCRIPTS / 'find_python.sh')], check=False, text=True,
-                            env={**os.environ, 'PYTHON': '/nowhere/python3.12'},
-                            capture_output=True, timeout=60)
+    result = subprocess.run(
+        ['sh', str(SCRIPTS / 'find_python.sh')],
+        check=False,
+        text=True,
+        env={**os.environ, 'PYTHON': '/nowhere/python3.12'},
+        capture_output=True,
+        timeout=60,
+    )
     assert result.returncode == 1
     assert 'PYTHON=/nowhere/python3.12' in result.stderr
 
 
 def test_missing_python_names_the_packages(tmp_path: Path) -> None:
     environment = {'PATH': str(tmp_path)}
-    result = subprocess.run(['/bin/sh', str(SCRIPTS / 'find_python.sh')], check=False, text=True,
-                            env=environment, capture_output=True, timeout=60)
+    result = subprocess.run(
+        ['/bin/sh', str(SCRIPTS / 'find_python.sh')],
+        check=False,
+        text=True,
+        env=environment,
+        capture_output=True,
+        timeout=60,
+    )
     assert result.returncode == 1
     assert 'python3-venv' in result.stderr
 

@@ -19,8 +19,13 @@ import yaml
 SOURCE = Path(__file__).parents[1] / 'ros_ws' / 'src'
 LAUNCH_FILES = sorted(SOURCE.glob('*/launch/*.launch.py'))
 PARAMETER_FILES = sorted(SOURCE.glob('*/config/*.yaml'))
-NODES = ('motion_tracker', 'lift_predictor', 'muscle_analyzer', 'injury_monitor',
-         'lifting_visualization')
+NODES = (
+    'motion_tracker',
+    'lift_predictor',
+    'muscle_analyzer',
+    'injury_monitor',
+    'lifting_visualization',
+)
 
 
 @pytest.fixture
@@ -28,10 +33,20 @@ def stand_ins(monkeypatch):
     """Put recorders in the place of `launch` and `launch_ros`; return that of LifecycleNode."""
     recorder = MagicMock(name='LifecycleNode')
     for name in (
-        'launch', 'launch.actions', 'launch.conditions', 'launch.event_handlers', 'launch.events',
-        'launch.launch_description_sources', 'launch.substitutions', 'launch_ros',
-        'launch_ros.actions', 'launch_ros.event_handlers', 'launch_ros.events',
-        'launch_ros.events.lifecycle', 'launch_ros.substitutions', 'ament_index_python',
+        'launch',
+        'launch.actions',
+        'launch.conditions',
+        'launch.event_handlers',
+        'launch.events',
+        'launch.launch_description_sources',
+        'launch.substitutions',
+        'launch_ros',
+        'launch_ros.actions',
+        'launch_ros.event_handlers',
+        'launch_ros.events',
+        'launch_ros.events.lifecycle',
+        'launch_ros.substitutions',
+        'ament_index_python',
         'ament_index_python.packages',
     ):
         module = ModuleType(name)

@@ -21,11 +21,25 @@ PYTHON_PACKAGES = sorted(path.parent for path in SOURCES.glob('*/setup.py'))
 OWN = {path.name for path in PACKAGES}
 SKIPPED_FOLDERS = {'build', 'install', 'log', 'out', '__pycache__'}
 CODE_SUFFIXES = {'.py', '.sh', '.cmake', '.msg', '.srv', '.action', '.toml', '.xml', '.cfg'}
-TEXT_SUFFIXES = CODE_SUFFIXES | {'.md', '.yaml', '.yml', '.csv', '.json', '.txt', '.in', '.html',
-                                 '.urdf', '.mot', '.sto', '.trc'}
+TEXT_SUFFIXES = CODE_SUFFIXES | {
+    '.md',
+    '.yaml',
+    '.yml',
+    '.csv',
+    '.json',
+    '.txt',
+    '.in',
+    '.html',
+    '.urdf',
+    '.mot',
+    '.sto',
+    '.trc',
+}
 MAXIMUM_LINES = 400
-HEADER = ('# SPDX-FileCopyrightText: 2026 The lift monitor authors\n'
-          '# SPDX-License-Identifier: Apache-2.0\n')
+HEADER = (
+    '# SPDX-FileCopyrightText: 2026 The lift monitor authors\n'
+    '# SPDX-License-Identifier: Apache-2.0\n'
+)
 
 # Imported module -> rosdep key. lz4 and backports.zstd come with rosbags.
 ROSDEP_KEYS = {
@@ -44,14 +58,20 @@ ROSDEP_KEYS = {
 WITHOUT_ROSDEP_KEY = {'casadi', 'distributed', 'ezc3d', 'pyarrow'}
 STANDARD_LIBRARY = sys.stdlib_module_names | {'compression'}  # compression: from Python 3.14
 # Started as processes by the launch files, or read as installed data; not imported.
-STARTED_BY_BRINGUP = {'motion_tracker', 'lift_predictor', 'muscle_analyzer', 'injury_monitor',
-                      'lifting_visualization'}
+STARTED_BY_BRINGUP = {
+    'motion_tracker',
+    'lift_predictor',
+    'muscle_analyzer',
+    'injury_monitor',
+    'lifting_visualization',
+}
 
 
 def project_files(suffixes: set[str]) -> Iterator[Path]:
     for folder, names, files in os.walk(ROOT):
-        names[:] = [name for name in names
-                    if name not in SKIPPED_FOLDERS and not name.startswith('.')]
+        names[:] = [
+            name for name in names if name not in SKIPPED_FOLDERS and not name.startswith('.')
+        ]
         for name in files:
             if Path(name).suffix in suffixes or name in ('Makefile', 'CMakeLists.txt'):
                 yield Path(folder) / name
@@ -74,9 +94,13 @@ def dependencies(root: ElementTree.Element, *tags: str) -> set[str]:
 def setup_arguments(package: Path) -> dict[str, object]:
     """Return the literal keyword arguments of setup()."""
     tree = ast.parse((package / 'setup.py').read_text())
-    call = next(node for node in ast.walk(tree)
-                if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)
-                and node.func.id == 'setup')
+    call = next(
+        node
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Call)
+        and isinstance(node.func, ast.Name)
+        and node.func.id == 'setup'
+    )
     arguments: dict[str, object] = {}
     for keyword in call.keywords:
         try:
@@ -99,9 +123,16 @@ def imported_modules(package: Path) -> set[str]:
 
 
 def test_workspace_has_the_packages_of_the_graph() -> None:
-    assert {'lifting_interfaces', 'human_model', 'motion_tracker', 'lift_predictor',
-            'muscle_analyzer', 'injury_monitor', 'lifting_visualization',
-            'lifting_bringup'} <= OWN
+    assert {
+        'lifting_interfaces',
+        'human_model',
+        'motion_tracker',
+        'lift_predictor',
+        'muscle_analyzer',
+        'injury_monitor',
+        'lifting_visualization',
+        'lifting_bringup',
+    } <= OWN
 
 
 @pytest.mark.parametrize('package', PACKAGES, ids=lambda path: path.name)
@@ -134,8 +165,11 @@ def test_entry_points_exist(package: Path) -> None:
         module, _, function = entry.split('=')[1].strip().partition(':')
         path = (package / module.replace('.', '/')).with_suffix('.py')
         assert path.exists(), f'{entry}: there is no {path.relative_to(ROOT)}'
-        names = {node.name for node in ast.parse(path.read_text()).body
-                 if isinstance(node, ast.FunctionDef)}
+        names = {
+            node.name
+            for node in ast.parse(path.read_text()).body
+            if isinstance(node, ast.FunctionDef)
+        }
         assert function in names, f'{entry}: {path.name} has no {function}()'
 
 
@@ -181,8 +215,10 @@ def test_spdx_header(suffix: str) -> None:
 
 
 def test_no_file_is_too_long() -> None:
-    lengths = {str(path.relative_to(ROOT)): path.read_text().count('\n')
-               for path in project_files(CODE_SUFFIXES)}
+    lengths = {
+        str(path.relative_to(ROOT)): path.read_text().count('\n')
+        for path in project_files(CODE_SUFFIXES)
+    }
     assert {name: count for name, count in lengths.items() if count > MAXIMUM_LINES} == {}
 
 

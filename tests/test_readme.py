@@ -15,15 +15,31 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 SOURCES = ROOT / 'ros_ws' / 'src'
-NODES = ('motion_tracker', 'lift_predictor', 'muscle_analyzer', 'injury_monitor',
-         'lifting_visualization')
+NODES = (
+    'motion_tracker',
+    'lift_predictor',
+    'muscle_analyzer',
+    'injury_monitor',
+    'lifting_visualization',
+)
 README = (ROOT / 'README.md').read_text(encoding='utf-8')
 DOCUMENTS = sorted(
-    path for path in (*ROOT.glob('*.md'), *ROOT.glob('docs/*.md'), *ROOT.glob('bags/*.md'),
-                      *SOURCES.glob('*/*.md'))
+    path
+    for path in (
+        *ROOT.glob('*.md'),
+        *ROOT.glob('docs/*.md'),
+        *ROOT.glob('bags/*.md'),
+        *SOURCES.glob('*/*.md'),
+    )
 )
-QUALITIES = {'PLATES': 'plates', 'FRAMES': 'frames', 'LATCHED': 'latched', 'RESULTS': 'results',
-             'VIEW': 'view', 'TRANSFORMS': 'transforms'}
+QUALITIES = {
+    'PLATES': 'plates',
+    'FRAMES': 'frames',
+    'LATCHED': 'latched',
+    'RESULTS': 'results',
+    'VIEW': 'view',
+    'TRANSFORMS': 'transforms',
+}
 #: Values of the variable in a topic's name.
 VARIABLES = {'side': ('right', 'left')}
 
@@ -70,7 +86,8 @@ def full_types(tree: ast.Module) -> dict[str, str]:
     return {
         alias.asname or alias.name: f'{node.module.rpartition(".")[0]}/{alias.name}'
         for node in ast.walk(tree)
-        if isinstance(node, ast.ImportFrom) and node.module
+        if isinstance(node, ast.ImportFrom)
+        and node.module
         and node.module.endswith(('.msg', '.srv', '.action'))
         for alias in node.names
     }
@@ -84,17 +101,25 @@ def endpoints(package: str, methods: tuple[str, ...]) -> dict[str, Endpoint]:
     types = full_types(tree)
     assigned = {
         target.id: node.value
-        for node in ast.walk(tree) if isinstance(node, ast.Assign)
-        for target in node.targets if isinstance(target, ast.Name)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Assign)
+        for target in node.targets
+        if isinstance(target, ast.Name)
     }
     found = {}
     for node in ast.walk(tree):
-        if not (isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute)
-                and node.func.attr in methods):
+        if not (
+            isinstance(node, ast.Call)
+            and isinstance(node.func, ast.Attribute)
+            and node.func.attr in methods
+        ):
             continue
         kind = node.args[0]
-        quality = [argument.attr for argument in node.args
-                   if isinstance(argument, ast.Attribute) and argument.attr in QUALITIES]
+        quality = [
+            argument.attr
+            for argument in node.args
+            if isinstance(argument, ast.Attribute) and argument.attr in QUALITIES
+        ]
         assert isinstance(kind, ast.Name) and len(quality) == 1, ast.dump(node)
         for name in topic_names(node.args[1], assigned, module):
             found[name] = (types[kind.id], QUALITIES[quality[0]])
@@ -103,8 +128,9 @@ def endpoints(package: str, methods: tuple[str, ...]) -> dict[str, Endpoint]:
 
 def documented() -> dict[str, tuple[str, str, str]]:
     """Return type, quality of service and publisher by topic of the README's table."""
-    rows = re.findall(r'^\| `([\w/{},]+)` \| `(\w+/\w+)` \| (\w+) \| (`?\w+`?) \|', README,
-                      re.MULTILINE)
+    rows = re.findall(
+        r'^\| `([\w/{},]+)` \| `(\w+/\w+)` \| (\w+) \| (`?\w+`?) \|', README, re.MULTILINE
+    )
     return {
         name: (kind, quality, publisher.strip('`'))
         for braces, kind, quality, publisher in rows
@@ -152,15 +178,16 @@ def _served(package: str, tree: ast.Module, types: dict[str, str]) -> dict[str, 
         first = {'create_service': 0, 'ActionServer': 1}.get(name)
         if first is None:
             continue
-        kind, topic = node.args[first:first + 2]
+        kind, topic = node.args[first : first + 2]
         assert isinstance(kind, ast.Name) and isinstance(topic, ast.Constant), ast.dump(node)
         found[str(topic.value).replace('~', package)] = types[kind.id]
     return found
 
 
 def test_services_table_is_what_the_nodes_serve() -> None:
-    rows = re.findall(r'^\| `([\w/]+)`(?: \(action\))? \| `(\w+/\w+)` \| [^|]*\|$', README,
-                      re.MULTILINE)
+    rows = re.findall(
+        r'^\| `([\w/]+)`(?: \(action\))? \| `(\w+/\w+)` \| [^|]*\|$', README, re.MULTILINE
+    )
     assert dict(rows) == {
         name: kind for package in NODES for name, kind in served(package).items()
     }
@@ -184,8 +211,9 @@ def lift_commands() -> dict[str, set[str]]:
     """Return the options of each subcommand of `lift`."""
     from lifting_bringup.cli import _parser
 
-    action = next(action for action in _parser()._actions
-                  if isinstance(action, argparse._SubParsersAction))
+    action = next(
+        action for action in _parser()._actions if isinstance(action, argparse._SubParsersAction)
+    )
     return {
         name: {option for entry in parser._actions for option in entry.option_strings}
         for name, parser in action.choices.items()
@@ -282,8 +310,12 @@ def test_alarms_table_is_that_of_the_monitor() -> None:
         return list(csv.DictReader(line for line in lines if not line.startswith('#')))
 
     limits = {row['limit']: row['value'] for row in rows('limits.csv')}
-    table = {name: (limit, latching) for name, limit, latching in re.findall(
-        r'^\| `(\w+)` \| ([^|]+) \| (yes|no) \|', README, re.MULTILINE)}
+    table = {
+        name: (limit, latching)
+        for name, limit, latching in re.findall(
+            r'^\| `(\w+)` \| ([^|]+) \| (yes|no) \|', README, re.MULTILINE
+        )
+    }
     alarms = rows('alarms.csv')
     assert set(table) == {row['alarm'] for row in alarms}
     for row in alarms:

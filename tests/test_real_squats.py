@@ -76,12 +76,7 @@ def squats(squats_files, bags, tracked, tmp_path_factory):
     whole = analyzer.analyze(motion, '', 'measured')
     live = [analyzer.analyze(frame.motion) for frame in found.frames]
     return SimpleNamespace(
-        found=found,
-        analyses=analyses,
-        motion=motion,
-        whole=whole,
-        live=live,
-        files=squats_files,
+        found=found, analyses=analyses, motion=motion, whole=whole, live=live, files=squats_files
     )
 
 

@@ -45,8 +45,10 @@ def test_a_room_imports_only_what_it_may(package: str) -> None:
 
 @pytest.mark.parametrize(
     'folder',
-    ['human_model/human_model', *(f'{p}/{p}/core' for p in MAY_IMPORT if p not in
-                                  ('human_model', 'lifting_node'))],
+    [
+        'human_model/human_model',
+        *(f'{p}/{p}/core' for p in MAY_IMPORT if p not in ('human_model', 'lifting_node')),
+    ],
 )
 def test_cores_know_no_ros(folder: str) -> None:
     files = list((SOURCES / folder).rglob('*.py'))

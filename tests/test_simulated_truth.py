@@ -166,7 +166,9 @@ def test_net_l5_s1_moment_from_above_and_below(lift):
     torque = np.array(
         [
             skeleton.inverse_dynamics(
-                motion.position[k], motion.velocity[k], motion.acceleration[k],
+                motion.position[k],
+                motion.velocity[k],
+                motion.acceleration[k],
                 outer_forces(motion, k),
             )
             for k in range(len(motion))
@@ -214,6 +216,4 @@ def test_live_delay_is_stated(lift):
 def test_events_carry_the_box_height(lift):
     heights = [e.event.height for e in lift.found.events]
     times = np.array([e.event.time for e in lift.found.events]) - lift.found.start
-    np.testing.assert_allclose(
-        heights, at(lift.truth, 'box_position', times)[:, 2], atol=5e-3
-    )
+    np.testing.assert_allclose(heights, at(lift.truth, 'box_position', times)[:, 2], atol=5e-3)

@@ -89,9 +89,10 @@ def soak(bag, rounds, loops, folder, say=print):
             assert player.process.returncode == 0, player.log.read_text()
             answer = flush.call_async(Trigger.Request())
             deadline = time.monotonic() + loops * PLAY_TIMEOUT
-            while not (
-                answer.done() and heard.live >= play * frames and heard.lifts >= play
-            ) and time.monotonic() < deadline:
+            while (
+                not (answer.done() and heard.live >= play * frames and heard.lifts >= play)
+                and time.monotonic() < deadline
+            ):
                 graph.check()
                 executor.spin_once(timeout_sec=0.05)
             say(

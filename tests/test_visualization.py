@@ -30,10 +30,13 @@ pytestmark = pytest.mark.timeout(180)
 
 def test_colours_change_at_the_limits_of_the_monitor() -> None:
     parameters = yaml.safe_load(
-        files('lifting_visualization').joinpath('data/parameters.yaml').read_text('utf-8'))
+        files('lifting_visualization').joinpath('data/parameters.yaml').read_text('utf-8')
+    )
     lines = files('injury_monitor').joinpath('data/limits.csv').read_text('utf-8').splitlines()
-    limits = {row['limit']: float(row['value'])
-              for row in csv.DictReader(line for line in lines if not line.startswith('#'))}
+    limits = {
+        row['limit']: float(row['value'])
+        for row in csv.DictReader(line for line in lines if not line.startswith('#'))
+    }
     for name in ('compression_action', 'compression_maximum'):
         assert parameters[name]['default'] == limits[name]
 
@@ -42,8 +45,16 @@ def test_colours_change_at_the_limits_of_the_monitor() -> None:
 def recorded(bags: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, list]:
     """Run a recording with its pictures recorded; return stamps [s] and messages by topic."""
     output = tmp_path_factory.mktemp('pictures')
-    report = run_online(RunOptions(bags / BAG, output, rate=RATE, settle_timeout=60.0,
-                                   visualize=True, record_visualization=True))
+    report = run_online(
+        RunOptions(
+            bags / BAG,
+            output,
+            rate=RATE,
+            settle_timeout=60.0,
+            visualize=True,
+            record_visualization=True,
+        )
+    )
     assert report.exit_codes['lifting_visualization'] in (0, -15)
     found: dict[str, list] = {}
     with BagReader(report.results) as bag:
@@ -54,8 +65,9 @@ def recorded(bags: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, 
 
 def links(recorded: dict[str, list]) -> list:
     """Return the messages of /tf with the person's links."""
-    return [message for _, message in recorded['/tf']
-            if message.transforms[0].child_frame_id != DISC]
+    return [
+        message for _, message in recorded['/tf'] if message.transforms[0].child_frame_id != DISC
+    ]
 
 
 def poses(message: Any) -> dict[str, np.ndarray]:
@@ -73,19 +85,25 @@ def poses(message: Any) -> dict[str, np.ndarray]:
 def test_urdf_and_tf_have_the_same_links(recorded: dict[str, list]) -> None:
     ((_, description),) = recorded['robot_description']
     robot = ElementTree.fromstring(description.data)
-    joints = {(joint.find('parent').get('link'), joint.find('child').get('link'))
-              for joint in robot.findall('joint')}
+    joints = {
+        (joint.find('parent').get('link'), joint.find('child').get('link'))
+        for joint in robot.findall('joint')
+    }
     prefix = STATION.strip('/') + '/'
     entries = [*links(recorded)[-1].transforms, *recorded['/tf_static'][-1][1].transforms]
-    assert joints == {(entry.header.frame_id.removeprefix(prefix),
-                       entry.child_frame_id.removeprefix(prefix)) for entry in entries}
+    assert joints == {
+        (entry.header.frame_id.removeprefix(prefix), entry.child_frame_id.removeprefix(prefix))
+        for entry in entries
+    }
 
 
 def test_tf_puts_the_links_where_the_tracker_has_the_joints(recorded: dict[str, list]) -> None:
     """The live links against the markers of the same instant, in the same file."""
-    pictures = {to_seconds(message.markers[0].header.stamp): message.markers
-                for _, message in recorded['visualization']
-                if message.markers[0].ns == 'person'}
+    pictures = {
+        to_seconds(message.markers[0].header.stamp): message.markers
+        for _, message in recorded['visualization']
+        if message.markers[0].ns == 'person'
+    }
     ((_, lift),) = recorded['measured_lift']
     names = motion_from_msg(lift.motion).point_names
     compared = 0
@@ -94,23 +112,35 @@ def test_tf_puts_the_links_where_the_tracker_has_the_joints(recorded: dict[str, 
         if drawn is None:
             continue
         places = poses(message)
-        joints = {name: np.array([p.x, p.y, p.z])
-                  for name, p in zip(names, drawn[1].points, strict=True)}
-        for point, link in (('l5_s1', 'lumbar'), ('elbow_r', 'forearm_r'), ('wrist_l', 'hand_l'),
-                            ('knee_r', 'shank_r'), ('ankle_l', 'foot_l'), ('mtp_r', 'toes_r')):
-            np.testing.assert_allclose(places[f'station_1/{link}'][:3, 3], joints[point],
-                                       atol=1e-9)
+        joints = {
+            name: np.array([p.x, p.y, p.z]) for name, p in zip(names, drawn[1].points, strict=True)
+        }
+        for point, link in (
+            ('l5_s1', 'lumbar'),
+            ('elbow_r', 'forearm_r'),
+            ('wrist_l', 'hand_l'),
+            ('knee_r', 'shank_r'),
+            ('ankle_l', 'foot_l'),
+            ('mtp_r', 'toes_r'),
+        ):
+            np.testing.assert_allclose(
+                places[f'station_1/{link}'][:3, 3], joints[point], atol=1e-9
+            )
             compared += 1
     assert compared >= 12
 
 
 def test_tf_knows_the_frame_of_every_reaction(recorded: dict[str, list]) -> None:
     """A reaction turned into the laboratory by /tf presses the disc of the person, upwards."""
-    discs = {to_seconds(message.transforms[0].header.stamp): poses(message)[DISC]
-             for _, message in recorded['/tf']
-             if message.transforms[0].child_frame_id == DISC}
-    spines = {to_seconds(message.transforms[0].header.stamp): poses(message)['station_1/lumbar']
-              for message in links(recorded)}
+    discs = {
+        to_seconds(message.transforms[0].header.stamp): poses(message)[DISC]
+        for _, message in recorded['/tf']
+        if message.transforms[0].child_frame_id == DISC
+    }
+    spines = {
+        to_seconds(message.transforms[0].header.stamp): poses(message)['station_1/lumbar']
+        for message in links(recorded)
+    }
     reactions = [message for _, message in recorded['l5_s1/reaction']]
     assert {message.header.frame_id for message in reactions} == {DISC}
     assert len(reactions) > 100
@@ -140,7 +170,11 @@ def test_load_and_optimal_lift_are_shown(recorded: dict[str, list]) -> None:
             if marker.text:
                 texts.setdefault(marker.ns, set()).add(marker.text)
     assert texts['predicted'] == {'optimal lift, 7 kg'}
-    compressions = {f'{value:.0f} N' for _, load in recorded['spine_load']
-                    if load.source == load.LIVE for value in load.compression}
+    compressions = {
+        f'{value:.0f} N'
+        for _, load in recorded['spine_load']
+        if load.source == load.LIVE
+        for value in load.compression
+    }
     assert len(texts['l5_s1']) > 10
     assert texts['l5_s1'] <= compressions

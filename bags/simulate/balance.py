@@ -14,11 +14,10 @@ import numpy as np
 from bags.simulate.forces import GRAVITY, whole_wrench
 from bags.simulate.motion import SOLVE_RATE, MotionBuilder, SimulatedMotion
 from bags.simulate.tasks import Task
-from numpy.typing import NDArray
 from scipy.linalg import solve_banded
 from scipy.signal import butter, sosfiltfilt
 
-Array = NDArray[np.float64]
+from human_model.typing import Array
 
 # How far the centre of pressure may swing about its resting place, forward and sideways [m];
 # chosen, well inside a foot of 0.26 m.

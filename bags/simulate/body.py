@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from bags.simulate.tasks import Stage
-from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation
 
@@ -17,9 +16,7 @@ from human_model import compiled
 from human_model.named_subjects import named_subject
 from human_model.skeleton_3d import Skeleton3D
 from human_model.subject import Subject
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+from human_model.typing import Array, IntArray
 
 SIDES = ('r', 'l')
 # Lever [m] of the second point that holds the direction of the grip.

@@ -21,12 +21,10 @@ from bags.simulate.body import Body
 from bags.simulate.motion import SimulatedMotion, grips
 from bags.simulate.profiles import quintic
 from bags.simulate.tasks import Stage
-from numpy.typing import NDArray
 
 from human_model import compiled
 from human_model.skeleton import ExternalForce
-
-Array = NDArray[np.float64]
+from human_model.typing import Array
 
 GRAVITY = 9.80665
 _PELVIS_TRANSLATIONS = 3

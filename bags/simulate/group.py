@@ -19,13 +19,11 @@ from bags.simulate.body import Body
 from bags.simulate.forces import simulate_forces
 from bags.simulate.motion import MotionBuilder
 from bags.simulate.tasks import Task, load_tasks
-from numpy.typing import NDArray
 
 from human_model.motion import Lift
 from human_model.report import SolveReport
 from human_model.subject import Subject
-
-Array = NDArray[np.float64]
+from human_model.typing import Array
 
 GROUP_SIZE: Final = 12
 """Men in the study of chapter II."""

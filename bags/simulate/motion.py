@@ -13,11 +13,10 @@ import yaml
 from bags.simulate.body import SIDES, Body, Goal
 from bags.simulate.profiles import minimum_jerk, quintic, slow_wander
 from bags.simulate.tasks import Stage, Task
-from numpy.typing import NDArray
 from scipy.interpolate import BSpline, make_interp_spline
 from scipy.spatial.transform import Rotation
 
-Array = NDArray[np.float64]
+from human_model.typing import Array
 
 # Postures are solved at this rate and joined by quintic splines [Hz].
 SOLVE_RATE = 100.0

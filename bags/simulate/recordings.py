@@ -22,9 +22,9 @@ from bags.simulate.sensors import (
     plate_readings,
 )
 from bags.simulate.tasks import Stage, Task
-from numpy.typing import NDArray
 
 from human_model.subject import Calibration, Subject
+from human_model.typing import Array
 from lifting_bringup.bags.bag_writer import START_TIME_NS, BagWriter, in_order
 from lifting_bringup.bags.importer import marker_stream, plate_stream, pose_stream
 from lifting_bringup.bags.messages import MarkerCalibration, subject_message, task_message
@@ -32,8 +32,6 @@ from lifting_bringup.bags.recording import Recording
 from lifting_bringup.bags.subject_file import SubjectEntry, TaskEntry
 from motion_tracker.core.calibration import calibrate
 from motion_tracker.core.marker_set import load_marker_set
-
-Array = NDArray[np.float64]
 
 _SOURCE = (
     'SIMULATED, not measured: bags/simulate. Person, task and box after Zaman 2022; motion by '

@@ -15,14 +15,12 @@ import numpy as np
 from bags.simulate.body import Body
 from bags.simulate.forces import SimulatedForces
 from bags.simulate.tasks import Stage
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from human_model import compiled
+from human_model.typing import Array
 from lifting_bringup.bags.recording import Plate
 from motion_tracker.core.marker_set import load_marker_set
-
-Array = NDArray[np.float64]
 
 # Joints next to each segment, whose angles move its soft tissue.
 _NEIGHBOURS = {

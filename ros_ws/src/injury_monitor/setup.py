@@ -28,6 +28,6 @@ setup(
     ),
     license='Apache-2.0',
     entry_points={
-        'console_scripts': ['injury_monitor_node = injury_monitor.injury_monitor_node:main'],
+        'console_scripts': ['injury_monitor_node = injury_monitor.injury_monitor_node:main']
     },
 )

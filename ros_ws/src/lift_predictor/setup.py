@@ -28,6 +28,6 @@ setup(
     ),
     license='Apache-2.0',
     entry_points={
-        'console_scripts': ['lift_predictor_node = lift_predictor.lift_predictor_node:main'],
+        'console_scripts': ['lift_predictor_node = lift_predictor.lift_predictor_node:main']
     },
 )

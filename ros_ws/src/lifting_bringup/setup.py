@@ -27,7 +27,5 @@ setup(
         'run the graph, write the report.'
     ),
     license='Apache-2.0',
-    entry_points={
-        'console_scripts': ['lift = lifting_bringup.cli:main'],
-    },
+    entry_points={'console_scripts': ['lift = lifting_bringup.cli:main']},
 )

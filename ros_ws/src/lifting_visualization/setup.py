@@ -30,6 +30,6 @@ setup(
     entry_points={
         'console_scripts': [
             'lifting_visualization_node = lifting_visualization.lifting_visualization_node:main'
-        ],
+        ]
     },
 )

@@ -28,6 +28,6 @@ setup(
     ),
     license='Apache-2.0',
     entry_points={
-        'console_scripts': ['motion_tracker_node = motion_tracker.motion_tracker_node:main'],
+        'console_scripts': ['motion_tracker_node = motion_tracker.motion_tracker_node:main']
     },
 )

@@ -28,6 +28,6 @@ setup(
     ),
     license='Apache-2.0',
     entry_points={
-        'console_scripts': ['muscle_analyzer_node = muscle_analyzer.muscle_analyzer_node:main'],
+        'console_scripts': ['muscle_analyzer_node = muscle_analyzer.muscle_analyzer_node:main']
     },
 )

@@ -13,15 +13,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from human_model.errors import AnthropometryError
 from human_model.frames import ROS_FROM_OPENSIM
 from human_model.inertia import combine, positive_inertia, rotate
 from human_model.subject import Subject
 from human_model.tables import length_sum, read_table
-
-Array = npt.NDArray[np.float64]
+from human_model.typing import Array
 
 #: Share of the foot's mass that is in the toes, and the toes' centre of mass and inertia, from
 #: the body ``toes_r`` of Rajagopal et al. 2016 (0.2166 kg of 1.5666 kg talus, calcaneus, toes).
@@ -67,14 +65,17 @@ class SegmentParameters:
         """Check shapes and that every inertia tensor can belong to a body."""
         n = len(self.segments)
         if self.mass.shape != (n,) or self.com.shape != (n, 3) or self.inertia.shape != (n, 3, 3):
-            raise AnthropometryError(f'{n} segments, but shapes {self.mass.shape}, '
-                                     f'{self.com.shape}, {self.inertia.shape}')
+            raise AnthropometryError(
+                f'{n} segments, but shapes {self.mass.shape}, '
+                f'{self.com.shape}, {self.inertia.shape}'
+            )
         for i, name in enumerate(self.segments):
             if not (np.isfinite(self.mass[i]) and self.mass[i] >= 0):
                 raise AnthropometryError(f'{name}: mass {self.mass[i]} kg')
             if self.mass[i] > 0 and not positive_inertia(self.inertia[i]):
-                raise AnthropometryError(f'{name}: inertia {self.inertia[i].tolist()} kg m^2 '
-                                         'cannot belong to a body')
+                raise AnthropometryError(
+                    f'{name}: inertia {self.inertia[i].tolist()} kg m^2 cannot belong to a body'
+                )
         for array in (self.mass, self.com, self.inertia):
             array.setflags(write=False)
 
@@ -86,8 +87,9 @@ class SegmentParameters:
     def index(self, segment: str) -> int:
         """Index of a segment by name."""
         if segment not in self.segments:
-            raise AnthropometryError(f'no segment named {segment!r}; there are '
-                                     f'{", ".join(self.segments)}')
+            raise AnthropometryError(
+                f'no segment named {segment!r}; there are {", ".join(self.segments)}'
+            )
         return self.segments.index(segment)
 
 
@@ -101,9 +103,11 @@ def body_dimensions(sex: str, stature: float, mass: float) -> dict[str, float]:
     dimensions = {'stature': stature}
     for row in read_table('ansur2_regressions'):
         if row['sex'] == sex:
-            dimensions[row['dimension']] = (float(row['constant'])
-                                            + float(row['per_stature']) * stature
-                                            + float(row['per_mass']) * mass)
+            dimensions[row['dimension']] = (
+                float(row['constant'])
+                + float(row['per_stature']) * stature
+                + float(row['per_mass']) * mass
+            )
     return dimensions
 
 
@@ -121,28 +125,34 @@ def segment_lengths(subject: Subject) -> tuple[dict[str, float], dict[str, str]]
     table = [row for row in read_table('segment_lengths') if row['sex'] in ('both', subject.sex)]
     unknown = sorted(set(measured) - {row['length'] for row in table})
     if unknown:
-        raise AnthropometryError(f'subject.lengths: unknown length {unknown[0]!r}; known are '
-                                 + ', '.join(row['length'] for row in table))
+        raise AnthropometryError(
+            f'subject.lengths: unknown length {unknown[0]!r}; known are '
+            + ', '.join(row['length'] for row in table)
+        )
     own = body_dimensions(subject.sex, subject.stature, subject.mass)
     predicted: dict[str, float] = {}
     for row in table:
         if row['reference']:
             # The generic full-body models are men; other references are of the subject's sex.
-            reference = body_dimensions('male' if row['sex'] == 'both' else subject.sex,
-                                        float(row['reference_stature']),
-                                        float(row['reference_mass']))
+            reference = body_dimensions(
+                'male' if row['sex'] == 'both' else subject.sex,
+                float(row['reference_stature']),
+                float(row['reference_mass']),
+            )
             value = float(row['reference']) * own[row['scale_by']] / reference[row['scale_by']]
         else:
             value = length_sum(row['terms'], {**own, **predicted})
         predicted[row['length']] = value
     lengths = {name: float(measured.get(name, value)) for name, value in predicted.items()}
-    sources = {row['length']: 'measured' if row['length'] in measured else row['source']
-               for row in table}
+    sources = {
+        row['length']: 'measured' if row['length'] in measured else row['source'] for row in table
+    }
     for name, value in lengths.items():
         low = 0.0 if name in _MAY_BE_ZERO and value == 0.0 else 0.005
         if name not in _OFFSETS and value < low:
-            raise AnthropometryError(f'length {name}: {value:.4f} m of subject '
-                                     f'{subject.pseudonym!r} is not positive')
+            raise AnthropometryError(
+                f'length {name}: {value:.4f} m of subject {subject.pseudonym!r} is not positive'
+            )
     return lengths, sources
 
 
@@ -158,20 +168,30 @@ def segment_parameters(subject: Subject) -> SegmentParameters:
     bodies = _dumas_bodies(subject.sex, lengths)
     total = sum(body[0] for body in bodies.values())
     names = tuple(bodies)
-    sources = {**sources,
-               'mass': 'Dumas et al. 2007 fractions, divided by their sum '
-                       f'({_fraction_sum(subject.sex):.3f}) to give the mass of the subject',
-               'com': 'Dumas et al. 2007, 2015', 'inertia': 'Dumas et al. 2007, 2015'}
+    sources = {
+        **sources,
+        'mass': 'Dumas et al. 2007 fractions, divided by their sum '
+        f'({_fraction_sum(subject.sex):.3f}) to give the mass of the subject',
+        'com': 'Dumas et al. 2007, 2015',
+        'inertia': 'Dumas et al. 2007, 2015',
+    }
     scale = subject.mass / total
     return SegmentParameters(
-        lengths, names, np.array([bodies[name][0] for name in names]) * scale,
+        lengths,
+        names,
+        np.array([bodies[name][0] for name in names]) * scale,
         np.array([bodies[name][1] for name in names]),
-        np.array([bodies[name][2] for name in names]) * scale, sources)
+        np.array([bodies[name][2] for name in names]) * scale,
+        sources,
+    )
 
 
 def _fraction_sum(sex: str) -> float:
-    return sum(float(row['mass_fraction']) * (1 if row['segment'] in TRUNK else 2)
-               for row in read_table('dumas_inertia') if row['sex'] == sex)
+    return sum(
+        float(row['mass_fraction']) * (1 if row['segment'] in TRUNK else 2)
+        for row in read_table('dumas_inertia')
+        if row['sex'] == sex
+    )
 
 
 def _long_axes(lengths: Mapping[str, float]) -> dict[str, Array]:
@@ -195,8 +215,10 @@ def _dumas_bodies(sex: str, lengths: Mapping[str, float]) -> dict[str, tuple[flo
     #: Dumas' origins that are not the proximal joint of this skeleton.
     origin = {name: axes[name] for name in ('pelvis', 'lumbar', 'thorax')}
     #: Lengths Dumas' fractions belong to where the segment has no such length itself.
-    sizes = {'pelvis': lengths['pelvis_length'],
-             'foot': float(np.hypot(lengths['ankle_mtp'], lengths['mtp_drop']))}
+    sizes = {
+        'pelvis': lengths['pelvis_length'],
+        'foot': float(np.hypot(lengths['ankle_mtp'], lengths['mtp_drop'])),
+    }
     right: dict[str, tuple[float, Array, Array]] = {}
     for row in read_table('dumas_inertia'):
         if row['sex'] != sex:
@@ -224,8 +246,9 @@ def _dumas_tensor(row: Mapping[str, str]) -> Array:
     """Tensor per m L^2 in ISB axes: diagonal r^2, off-diagonal sign(r) r^2."""
     r = {key: float(row[f'r_{key}']) for key in ('xx', 'yy', 'zz', 'xy', 'xz', 'yz')}
     s = {key: value * abs(value) for key, value in r.items()}
-    return np.array([[s['xx'], s['xy'], s['xz']], [s['xy'], s['yy'], s['yz']],
-                     [s['xz'], s['yz'], s['zz']]])
+    return np.array(
+        [[s['xx'], s['xy'], s['xz']], [s['xy'], s['yy'], s['yz']], [s['xz'], s['yz'], s['zz']]]
+    )
 
 
 def _upright_to(direction: Array) -> Array:
@@ -249,8 +272,9 @@ def _symmetric(body: tuple[float, Array, Array]) -> tuple[float, Array, Array]:
     return mass, (com + com_mirrored) / 2, (inertia + inertia_mirrored) / 2
 
 
-def _split_foot(foot: tuple[float, Array, Array], lengths: Mapping[str, float],
-                ) -> tuple[tuple[float, Array, Array], tuple[float, Array, Array]]:
+def _split_foot(
+    foot: tuple[float, Array, Array], lengths: Mapping[str, float]
+) -> tuple[tuple[float, Array, Array], tuple[float, Array, Array]]:
     """Divide Dumas' foot into hindfoot (origin ankle) and toes (origin MTP joint)."""
     row = read_table('toes_inertia')[0]
     scale = lengths['toes'] / float(row['length'])
@@ -276,8 +300,11 @@ def sagittal_parameters(parameters: SegmentParameters) -> SegmentParameters:
     groups: dict[str, list[tuple[str, Array]]] = {
         'pelvis': [('pelvis', none)],
         'trunk': [('lumbar', none), ('thorax', t12l1), ('head', c7)],
-        'forearm': [(f'{part}_{side}', at) for part, at in (('forearm', none), ('hand', wrist))
-                    for side in 'rl'],
+        'forearm': [
+            (f'{part}_{side}', at)
+            for part, at in (('forearm', none), ('hand', wrist))
+            for side in 'rl'
+        ],
     }
     for name in ('upper_arm', 'thigh', 'shank', 'foot', 'toes'):
         groups[name] = [(f'{name}_{side}', none) for side in 'rl']
@@ -285,8 +312,19 @@ def sagittal_parameters(parameters: SegmentParameters) -> SegmentParameters:
     bodies = []
     for name in order:
         parts = [(parameters.index(part), at) for part, at in groups[name]]
-        bodies.append(combine([(float(parameters.mass[i]), parameters.com[i] + at,
-                                parameters.inertia[i]) for i, at in parts]))
-    return SegmentParameters(lengths, order, np.array([body[0] for body in bodies]),
-                             np.array([body[1] for body in bodies]),
-                             np.array([body[2] for body in bodies]), parameters.sources)
+        bodies.append(
+            combine(
+                [
+                    (float(parameters.mass[i]), parameters.com[i] + at, parameters.inertia[i])
+                    for i, at in parts
+                ]
+            )
+        )
+    return SegmentParameters(
+        lengths,
+        order,
+        np.array([body[0] for body in bodies]),
+        np.array([body[1] for body in bodies]),
+        np.array([body[2] for body in bodies]),
+        parameters.sources,
+    )

@@ -11,13 +11,10 @@ over bodies allocate nothing.
 
 import numba
 import numpy as np
-import numpy.typing as npt
 
 from human_model import constants
 from human_model.tree import TreeArrays
-
-Array = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+from human_model.typing import Array, IntArray
 
 GRAVITY = constants.GRAVITY
 
@@ -117,8 +114,9 @@ def point_positions(tree: TreeArrays, q: Array, segment: IntArray, local: Array)
 
 
 @numba.njit(cache=True)
-def points_and_jacobian(tree: TreeArrays, q: Array, segment: IntArray, local: Array,
-                        ) -> tuple[Array, Array]:
+def points_and_jacobian(
+    tree: TreeArrays, q: Array, segment: IntArray, local: Array
+) -> tuple[Array, Array]:
     """World positions (n, 3) [m] of points and their Jacobian (n, 3, n_q) [m/rad or 1]."""
     rotation, origin, axis = body_frames(tree, q)
     n = segment.shape[0]
@@ -140,8 +138,9 @@ def points_and_jacobian(tree: TreeArrays, q: Array, segment: IntArray, local: Ar
 
 
 @numba.njit(cache=True)
-def body_motion(tree: TreeArrays, q: Array, qd: Array, qdd: Array,
-                ) -> tuple[Array, Array, Array, Array, Array, Array, Array]:
+def body_motion(
+    tree: TreeArrays, q: Array, qd: Array, qdd: Array
+) -> tuple[Array, Array, Array, Array, Array, Array, Array]:
     """Frames and their rates, all (n_q, ...) in world axes.
 
     Returns rotation, origin, axis, angular velocity, angular acceleration, and the origins'
@@ -179,7 +178,7 @@ def body_motion(tree: TreeArrays, q: Array, qd: Array, qdd: Array,
 
 @numba.njit(cache=True)
 def newton_euler(
-        tree: TreeArrays, q: Array, qd: Array, qdd: Array, wrench: Array, gravity: float,
+    tree: TreeArrays, q: Array, qd: Array, qdd: Array, wrench: Array, gravity: float
 ) -> Array:
     """Generalised forces (n_q,) [N m or N] by recursive Newton-Euler.
 

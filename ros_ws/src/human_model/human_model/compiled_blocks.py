@@ -4,19 +4,17 @@
 
 import numba
 import numpy as np
-import numpy.typing as npt
 
 from human_model.compiled import body_motion, segment_frames
 from human_model.compiled_quaternions import quaternions
 from human_model.tree import TreeArrays
-
-Array = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+from human_model.typing import Array, IntArray
 
 
 @numba.njit(cache=True)
-def points_and_frames(tree: TreeArrays, q: Array, segment: IntArray, local: Array,
-                      frame_segment: IntArray) -> tuple[Array, Array]:
+def points_and_frames(
+    tree: TreeArrays, q: Array, segment: IntArray, local: Array, frame_segment: IntArray
+) -> tuple[Array, Array]:
     """Positions of points and orientations of segments at coordinates q (n, n_q).
 
     Parameters are the points' segments (n_p,) and local positions (n_p, 3) [m], and the segments
@@ -31,8 +29,10 @@ def points_and_frames(tree: TreeArrays, q: Array, segment: IntArray, local: Arra
             s = segment[i]
             for r in range(3):
                 points[k, i, r] = origin[s, r] + (
-                    rotation[s, r, 0] * local[i, 0] + rotation[s, r, 1] * local[i, 1]
-                    + rotation[s, r, 2] * local[i, 2])
+                    rotation[s, r, 0] * local[i, 0]
+                    + rotation[s, r, 1] * local[i, 1]
+                    + rotation[s, r, 2] * local[i, 2]
+                )
         frames[k] = quaternions(rotation[frame_segment])
     return points, frames
 
@@ -60,7 +60,9 @@ def outer_force(tree: TreeArrays, q: Array, qd: Array, qdd: Array, gravity: floa
             for i in range(3):
                 j, m = (i + 1) % 3, (i + 2) % 3
                 force[k, i] += tree.mass[s] * (
-                    acceleration[b, i] + (alpha[b, j] * arm[m] - alpha[b, m] * arm[j])
-                    + (omega[b, j] * spun[m] - omega[b, m] * spun[j]))
+                    acceleration[b, i]
+                    + (alpha[b, j] * arm[m] - alpha[b, m] * arm[j])
+                    + (omega[b, j] * spun[m] - omega[b, m] * spun[j])
+                )
         force[k, 2] += gravity * tree.mass.sum()
     return force

@@ -4,9 +4,8 @@
 
 import numba
 import numpy as np
-import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
+from human_model.typing import Array
 
 
 @numba.njit(cache=True)

@@ -16,8 +16,7 @@ import numpy.typing as npt
 
 from human_model.errors import ChainError
 from human_model.tables import length_sum, read_table
-
-Array = npt.NDArray[np.float64]
+from human_model.typing import Array
 
 _ANGLES = {'0': 0.0, 'pi': pi, 'pi/2': pi / 2, '-pi/2': -pi / 2, '-pi': -pi}
 
@@ -25,10 +24,14 @@ _ANGLES = {'0': 0.0, 'pi': pi, 'pi/2': pi / 2, '-pi/2': -pi / 2, '-pi': -pi}
 def dh_transform(theta: float, d: float, a: float, alpha: float) -> Array:
     """Homogeneous transformation (4, 4) of one row: theta, d, a, alpha in this sequence."""
     ct, st, ca, sa = np.cos(theta), np.sin(theta), np.cos(alpha), np.sin(alpha)
-    return np.array([[ct, -st * ca, st * sa, a * ct],
-                     [st, ct * ca, -ct * sa, a * st],
-                     [0.0, sa, ca, d],
-                     [0.0, 0.0, 0.0, 1.0]])
+    return np.array(
+        [
+            [ct, -st * ca, st * sa, a * ct],
+            [st, ct * ca, -ct * sa, a * st],
+            [0.0, sa, ca, d],
+            [0.0, 0.0, 0.0, 1.0],
+        ]
+    )
 
 
 @dataclass(frozen=True)
@@ -91,8 +94,10 @@ class Chain:
         """Coordinate value of every row (0 where fixed) from q (n_q,)."""
         values = np.asarray(q, dtype=np.float64)
         if values.shape != (len(self.coordinates),):
-            raise ChainError(f'{self.name}: {len(self.coordinates)} coordinates are needed, '
-                             f'got shape {values.shape}')
+            raise ChainError(
+                f'{self.name}: {len(self.coordinates)} coordinates are needed, '
+                f'got shape {values.shape}'
+            )
         expanded = np.zeros(len(self.rows))
         expanded[[i for i, row in enumerate(self.rows) if row.coordinate]] = values
         return expanded
@@ -129,11 +134,20 @@ def load_chain(name: str, lengths: Mapping[str, float]) -> Chain:
         for angle in ('theta', 'alpha'):
             if line[angle] not in _ANGLES:
                 raise ChainError(f'{where}: {angle} {line[angle]!r} is not a quarter turn')
-        rows.append(DHRow(
-            coordinate=coordinate, kind=kind, parent=parent, sign=int(line['sign']),
-            theta=_ANGLES[line['theta']], d=length_sum(line['d'], lengths),
-            a=length_sum(line['a'], lengths), alpha=_ANGLES[line['alpha']],
-            segment=line['segment'], branch=line['branch']))
+        rows.append(
+            DHRow(
+                coordinate=coordinate,
+                kind=kind,
+                parent=parent,
+                sign=int(line['sign']),
+                theta=_ANGLES[line['theta']],
+                d=length_sum(line['d'], lengths),
+                a=length_sum(line['a'], lengths),
+                alpha=_ANGLES[line['alpha']],
+                segment=line['segment'],
+                branch=line['branch'],
+            )
+        )
     chain = Chain(name, tuple(rows))
     for names in (chain.coordinates, chain.segments):
         if len(set(names)) != len(names):

@@ -11,8 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from human_model.errors import HumanModelError
-
-Array = npt.NDArray[np.float64]
+from human_model.typing import Array
 
 #: Rows: the REP-103 axes written in OpenSim's axes; ``v_ros = ROS_FROM_OPENSIM @ v_osim``.
 ROS_FROM_OPENSIM: Array = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
@@ -123,8 +122,15 @@ def quaternion_from_matrix(rotation: npt.ArrayLike) -> Array:
     """
     r = _matrices(rotation)
     trace = np.trace(r, axis1=-2, axis2=-1)
-    squared = np.stack([1 + 2 * r[..., 0, 0] - trace, 1 + 2 * r[..., 1, 1] - trace,
-                        1 + 2 * r[..., 2, 2] - trace, 1 + trace], axis=-1)
+    squared = np.stack(
+        [
+            1 + 2 * r[..., 0, 0] - trace,
+            1 + 2 * r[..., 1, 1] - trace,
+            1 + 2 * r[..., 2, 2] - trace,
+            1 + trace,
+        ],
+        axis=-1,
+    )
     products = np.empty((*r.shape[:-2], 4, 4))
     for i in range(4):
         products[..., i, i] = squared[..., i]

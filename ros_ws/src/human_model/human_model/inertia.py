@@ -5,9 +5,9 @@
 from collections.abc import Iterable
 
 import numpy as np
-import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
+from human_model.typing import Array
+
 #: Mass [kg], centre of mass (3,) [m], inertia tensor (3, 3) about it [kg m^2].
 Body = tuple[float, Array, Array]
 

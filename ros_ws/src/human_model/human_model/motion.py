@@ -14,18 +14,37 @@ import numpy.typing as npt
 
 from human_model.errors import MotionError
 from human_model.report import SolveReport
-
-Array = npt.NDArray[np.float64]
+from human_model.typing import Array
 
 SKELETONS = ('2d_10dof', '3d_40dof')
 SIDES = ('right', 'left')
 
 #: The shared points of the body [m], in this order; pairs are right, then left.
 POINTS = (
-    'pelvis', 'l5_s1', 'c7', 'head',
-    'shoulder_r', 'shoulder_l', 'elbow_r', 'elbow_l', 'wrist_r', 'wrist_l', 'hand_r', 'hand_l',
-    'hip_r', 'hip_l', 'knee_r', 'knee_l', 'ankle_r', 'ankle_l', 'heel_r', 'heel_l',
-    'mtp_r', 'mtp_l', 'toe_r', 'toe_l',
+    'pelvis',
+    'l5_s1',
+    'c7',
+    'head',
+    'shoulder_r',
+    'shoulder_l',
+    'elbow_r',
+    'elbow_l',
+    'wrist_r',
+    'wrist_l',
+    'hand_r',
+    'hand_l',
+    'hip_r',
+    'hip_l',
+    'knee_r',
+    'knee_l',
+    'ankle_r',
+    'ankle_l',
+    'heel_r',
+    'heel_l',
+    'mtp_r',
+    'mtp_l',
+    'toe_r',
+    'toe_l',
 )
 
 #: The shared segment frames, in this order: REP-103 axes in the neutral standing posture.
@@ -33,9 +52,16 @@ FRAMES = ('pelvis', 'thorax', 'hand_r', 'hand_l', 'foot_r', 'foot_l')
 
 _NAMES = ('coordinates', 'point_names', 'frame_names')
 _TAIL = {
-    'position': ('q',), 'velocity': ('q',), 'acceleration': ('q',),
-    'points': ('p', 3), 'frames': ('f', 4), 'ground_force': (2, 3), 'cop': (2, 3),
-    'free_moment': (2, 3), 'hand_force': (2, 3), 'box_position': (3,),
+    'position': ('q',),
+    'velocity': ('q',),
+    'acceleration': ('q',),
+    'points': ('p', 3),
+    'frames': ('f', 4),
+    'ground_force': (2, 3),
+    'cop': (2, 3),
+    'free_moment': (2, 3),
+    'hand_force': (2, 3),
+    'box_position': (3,),
 }
 #: So many values are summed by one thread; more may wait for several, longer than it takes.
 _FEW = 1000
@@ -96,8 +122,9 @@ class BodyMotion:
     def __post_init__(self) -> None:
         """Check shapes and finiteness; freeze the arrays."""
         if self.skeleton not in SKELETONS:
-            raise MotionError(f'motion.skeleton: one of {SKELETONS} is needed, '
-                              f'got {self.skeleton!r}')
+            raise MotionError(
+                f'motion.skeleton: one of {SKELETONS} is needed, got {self.skeleton!r}'
+            )
         names = [_checked_names(field, tuple(getattr(self, field))) for field in _NAMES]
         time = _frozen('time', self.time)
         if time.ndim != 1 or time.size < 1:
@@ -106,8 +133,10 @@ class BodyMotion:
             raise MotionError('motion.time: not finite')
         if time.size > 1 and not np.all(np.diff(time) > 0):
             worst = int(np.argmin(np.diff(time)))
-            raise MotionError(f'motion.time: not increasing from {time[worst]:.6f} s to '
-                              f'{time[worst + 1]:.6f} s (sample {worst + 1})')
+            raise MotionError(
+                f'motion.time: not increasing from {time[worst]:.6f} s to '
+                f'{time[worst + 1]:.6f} s (sample {worst + 1})'
+            )
         arrays = {'time': time}
         for name, shape in _shapes(time.size, *map(len, names)).items():
             array = arrays[name] = _frozen(name, getattr(self, name))
@@ -118,8 +147,7 @@ class BodyMotion:
                 raise MotionError(f'motion.{name}: not finite in sample {sample}')
         length = _worst_length(arrays['frames'])
         if abs(length - 1.0) > 1e-3:
-            raise MotionError(f'motion.frames: a quaternion of length {length:.4f} '
-                              'is no rotation')
+            raise MotionError(f'motion.frames: a quaternion of length {length:.4f} is no rotation')
         # All at once, past the frozen class's own __setattr__.
         self.__dict__.update(zip(_NAMES, names, strict=True), **arrays)
 
@@ -141,8 +169,12 @@ class BodyMotion:
         return (self[i] for i in range(len(self)))
 
     def _with(self, **arrays: Array) -> 'BodyMotion':
-        fields = {'skeleton': self.skeleton, 'coordinates': self.coordinates,
-                  'point_names': self.point_names, 'frame_names': self.frame_names}
+        fields = {
+            'skeleton': self.skeleton,
+            'coordinates': self.coordinates,
+            'point_names': self.point_names,
+            'frame_names': self.frame_names,
+        }
         return BodyMotion(**fields, **arrays)  # type: ignore[arg-type]
 
     def point(self, name: str) -> Array:
@@ -225,8 +257,10 @@ class Lift:
 
     def to_dict(self) -> dict[str, Any]:
         """Fields by name, as `numpy.savez` takes them; the motion's as ``motion.<name>``."""
-        fields: dict[str, Any] = {name: np.array(getattr(self, name)) for name in (
-            'lift_id', 'source', 'start', 'end', 'box_mass')}
+        fields: dict[str, Any] = {
+            name: np.array(getattr(self, name))
+            for name in ('lift_id', 'source', 'start', 'end', 'box_mass')
+        }
         fields['report'] = np.array(json.dumps(self.report.to_dict()))
         return fields | {f'motion.{name}': value for name, value in self.motion.to_dict().items()}
 
@@ -237,20 +271,28 @@ class Lift:
             if name not in fields:
                 raise MotionError(f'lift.{name}: missing')
         prefix = 'motion.'
-        motion = BodyMotion.from_dict({name.removeprefix(prefix): fields[name]
-                                       for name in fields if name.startswith(prefix)})
-        return cls(str(fields['lift_id']), str(fields['source']), float(fields['start']),
-                   float(fields['end']), float(fields['box_mass']), motion,
-                   SolveReport.from_dict(json.loads(str(fields['report']))))
+        motion = BodyMotion.from_dict(
+            {name.removeprefix(prefix): fields[name] for name in fields if name.startswith(prefix)}
+        )
+        return cls(
+            str(fields['lift_id']),
+            str(fields['source']),
+            float(fields['start']),
+            float(fields['end']),
+            float(fields['box_mass']),
+            motion,
+            SolveReport.from_dict(json.loads(str(fields['report']))),
+        )
 
     @property
     def window(self) -> BodyMotion:
         """The samples from start to end."""
         first, last = np.searchsorted(self.motion.time, (self.start - 1e-9, self.end + 1e-9))
         if last <= first:
-            raise MotionError(f'lift {self.lift_id}: no sample between {self.start:g} s and '
-                              f'{self.end:g} s')
-        return self.motion[int(first):int(last)]
+            raise MotionError(
+                f'lift {self.lift_id}: no sample between {self.start:g} s and {self.end:g} s'
+            )
+        return self.motion[int(first) : int(last)]
 
 
 def concatenate(blocks: Sequence[BodyMotion]) -> BodyMotion:
@@ -268,8 +310,12 @@ def concatenate(blocks: Sequence[BodyMotion]) -> BodyMotion:
         for name in ('skeleton', *_NAMES):
             if getattr(block, name) != getattr(first, name):
                 raise MotionError(f'concatenate: {name} differs between blocks')
-    return first._with(**{name: np.concatenate([getattr(block, name) for block in blocks])
-                          for name in ('time', *_TAIL)})
+    return first._with(
+        **{
+            name: np.concatenate([getattr(block, name) for block in blocks])
+            for name in ('time', *_TAIL)
+        }
+    )
 
 
 @lru_cache(maxsize=64)
@@ -285,8 +331,10 @@ def _checked_names(field: str, given: tuple[str, ...]) -> tuple[str, ...]:
 def _shapes(n: int, n_q: int, n_p: int, n_f: int) -> dict[str, tuple[int, ...]]:
     """Shape of each array of a block; remembered, as every live sample has the same."""
     sizes = {'q': n_q, 'p': n_p, 'f': n_f}
-    return {name: (n, *(item if isinstance(item, int) else sizes[item] for item in tail))
-            for name, tail in _TAIL.items()}
+    return {
+        name: (n, *(item if isinstance(item, int) else sizes[item] for item in tail))
+        for name, tail in _TAIL.items()
+    }
 
 
 def _frozen(name: str, value: npt.ArrayLike) -> Array:

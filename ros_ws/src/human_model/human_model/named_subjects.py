@@ -43,9 +43,15 @@ def named_subject(name: str) -> Subject:
     if name not in rows:
         raise SubjectError(f'no subject named {name!r}; there are {", ".join(rows)}')
     row = rows[name]
-    return Subject(pseudonym=name, sex=row['sex'], mass=float(row['mass']),
-                   stature=float(row['stature']), age=float(row['age']),
-                   strength_z=float(row['strength_z']), lengths=_lengths(name))
+    return Subject(
+        pseudonym=name,
+        sex=row['sex'],
+        mass=float(row['mass']),
+        stature=float(row['stature']),
+        age=float(row['age']),
+        strength_z=float(row['strength_z']),
+        lengths=_lengths(name),
+    )
 
 
 def named_parameters(name: str) -> SegmentParameters:
@@ -64,8 +70,10 @@ def _lengths(name: str) -> dict[str, float]:
     if not rows:
         return {}
     links = {row['link']: float(row['length']) for row in read_table(f'{name}_links')}
-    return {row['length']: float(row['factor']) * links[row['link']]
-            + length_sum(row['plus'], links) for row in rows}
+    return {
+        row['length']: float(row['factor']) * links[row['link']] + length_sum(row['plus'], links)
+        for row in rows
+    }
 
 
 def _thesis_2d(subject: Subject) -> SegmentParameters:
@@ -92,10 +100,18 @@ def _thesis_2d(subject: Subject) -> SegmentParameters:
         central = float(printed[segment]['inertia_zz']) - mass[i] * half**2
         inertia[i] = generic.inertia[i] * (central / generic.inertia[i, 1, 1])
     return SegmentParameters(
-        lengths, generic.segments, mass, com, inertia,
-        {**dict.fromkeys(lengths, 'thesis tables 2.2 and 3.2, ANSUR II where they are silent'),
-         'mass': 'thesis table 2.2', 'com': 'middle of the link',
-         'inertia': 'thesis table 2.2, about the proximal joint'})
+        lengths,
+        generic.segments,
+        mass,
+        com,
+        inertia,
+        {
+            **dict.fromkeys(lengths, 'thesis tables 2.2 and 3.2, ANSUR II where they are silent'),
+            'mass': 'thesis table 2.2',
+            'com': 'middle of the link',
+            'inertia': 'thesis table 2.2, about the proximal joint',
+        },
+    )
 
 
 def _thesis_3d(subject: Subject) -> SegmentParameters:
@@ -105,20 +121,37 @@ def _thesis_3d(subject: Subject) -> SegmentParameters:
     Dumas' foot can be divided into, so foot and toes keep the generic foot's centres of mass and,
     scaled by mass, its inertia.
     """
-    body = {name: value for name, value in subject.lengths.items()
-            if name not in ('ankle_mtp', 'toes')}
+    body = {
+        name: value for name, value in subject.lengths.items() if name not in ('ankle_mtp', 'toes')
+    }
     parameters = segment_parameters(replace(subject, lengths=body))
     link = {row['link']: float(row['mass']) for row in read_table('thesis_3d_links')}
     torso = link['L2'] + link['L4']
     share = parameters.mass / parameters.mass[parameters.index('lumbar')]
     thorax = share[parameters.index('thorax')]
-    masses = {'pelvis': link['L1'] + 2 * link['L9'], 'lumbar': torso / (1 + thorax),
-              'thorax': torso * thorax / (1 + thorax), 'head': link['L8']}
-    for name, key in (('upper_arm', 'L5'), ('forearm', 'L6'), ('hand', 'L7'), ('thigh', 'L10'),
-                      ('shank', 'L11'), ('foot', 'L12'), ('toes', 'L13')):
+    masses = {
+        'pelvis': link['L1'] + 2 * link['L9'],
+        'lumbar': torso / (1 + thorax),
+        'thorax': torso * thorax / (1 + thorax),
+        'head': link['L8'],
+    }
+    for name, key in (
+        ('upper_arm', 'L5'),
+        ('forearm', 'L6'),
+        ('hand', 'L7'),
+        ('thigh', 'L10'),
+        ('shank', 'L11'),
+        ('foot', 'L12'),
+        ('toes', 'L13'),
+    ):
         masses[f'{name}_r'] = masses[f'{name}_l'] = link[key]
     mass = np.array([masses[name] for name in parameters.segments])
     inertia = parameters.inertia * (mass / parameters.mass)[:, None, None]
     lengths, sources = segment_lengths(subject)
-    return replace(parameters, lengths=lengths, mass=mass, inertia=inertia,
-                   sources={**parameters.sources, **sources, 'mass': 'thesis table 3.2'})
+    return replace(
+        parameters,
+        lengths=lengths,
+        mass=mass,
+        inertia=inertia,
+        sources={**parameters.sources, **sources, 'mass': 'thesis table 3.2'},
+    )

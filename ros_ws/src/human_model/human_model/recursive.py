@@ -19,8 +19,7 @@ from human_model.constants import GRAVITY
 from human_model.dh import Chain
 from human_model.errors import ChainError
 from human_model.tree import row_segments
-
-Array = npt.NDArray[np.float64]
+from human_model.typing import Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,12 +44,16 @@ class RecursiveKinematics:
     def point(self, row: int, local: npt.ArrayLike) -> tuple[Array, Array, Array]:
         """Position, velocity, acceleration (3,) of a point of a row's frame (equation 2.4)."""
         augmented = np.append(np.asarray(local, dtype=np.float64), 1.0)
-        return ((self.a[row] @ augmented)[:3], (self.b[row] @ augmented)[:3],
-                (self.c[row] @ augmented)[:3])
+        return (
+            (self.a[row] @ augmented)[:3],
+            (self.b[row] @ augmented)[:3],
+            (self.c[row] @ augmented)[:3],
+        )
 
 
-def forward_kinematics(chain: Chain, q: npt.ArrayLike, qd: npt.ArrayLike, qdd: npt.ArrayLike,
-                       ) -> RecursiveKinematics:
+def forward_kinematics(
+    chain: Chain, q: npt.ArrayLike, qd: npt.ArrayLike, qdd: npt.ArrayLike
+) -> RecursiveKinematics:
     """Recursion from the world outward (equations 2.1 to 2.3); q, qd, qdd have shape (n_q,)."""
     values, rates, seconds = chain.expand(q), chain.expand(qd), chain.expand(qdd)
     n = len(chain.rows)
@@ -65,8 +68,12 @@ def forward_kinematics(chain: Chain, q: npt.ArrayLike, qd: npt.ArrayLike, qdd: n
             a_p, b_p, c_p = a[row.parent], b[row.parent], c[row.parent]
         a[i] = a_p @ transform[i]
         b[i] = b_p @ transform[i] + a_p @ first[i] * rates[i]
-        c[i] = (c_p @ transform[i] + 2.0 * b_p @ first[i] * rates[i]
-                + a_p @ second[i] * rates[i] ** 2 + a_p @ first[i] * seconds[i])
+        c[i] = (
+            c_p @ transform[i]
+            + 2.0 * b_p @ first[i] * rates[i]
+            + a_p @ second[i] * rates[i] ** 2
+            + a_p @ first[i] * seconds[i]
+        )
     return RecursiveKinematics(transform, first, second, a, b, c)
 
 
@@ -89,16 +96,24 @@ def augmented_inertia(chain: Chain, parameters: SegmentParameters) -> tuple[Arra
         com[i] = turn @ (origins[name] + parameters.com[s] - neutral[i, :3, 3])
         mass[i] = parameters.mass[s]
         tensor = turn @ parameters.inertia[s] @ turn.T
-        inertia[i, :3, :3] = (np.trace(tensor) / 2.0 * np.eye(3) - tensor
-                              + mass[i] * np.outer(com[i], com[i]))
+        inertia[i, :3, :3] = (
+            np.trace(tensor) / 2.0 * np.eye(3) - tensor + mass[i] * np.outer(com[i], com[i])
+        )
         inertia[i, :3, 3] = inertia[i, 3, :3] = mass[i] * com[i]
         inertia[i, 3, 3] = mass[i]
     return inertia, mass, com
 
 
-def recursive_dynamics(chain: Chain, parameters: SegmentParameters, q: npt.ArrayLike,
-                       qd: npt.ArrayLike, qdd: npt.ArrayLike, *, wrench: Array | None = None,
-                       gravity: float = GRAVITY) -> Array:
+def recursive_dynamics(
+    chain: Chain,
+    parameters: SegmentParameters,
+    q: npt.ArrayLike,
+    qd: npt.ArrayLike,
+    qdd: npt.ArrayLike,
+    *,
+    wrench: Array | None = None,
+    gravity: float = GRAVITY,
+) -> Array:
     """Generalised forces (n_q,) [N m; N] by the recursion from the tips inward (2.5 to 2.9).
 
     Parameters
@@ -135,8 +150,9 @@ def recursive_dynamics(chain: Chain, parameters: SegmentParameters, q: npt.Array
         a_p = np.eye(4) if row.parent < 0 else motion.a[row.parent]
         slope = a_p @ motion.first[i]
         axis = a_p[:, 2] * row.sign if row.kind == 'revolute' else np.zeros(4)
-        tau[i] = (np.trace(slope @ d[i]) - down @ slope @ e[i] - np.trace(slope @ f[i])
-                  - g[i] @ axis)
+        tau[i] = (
+            np.trace(slope @ d[i]) - down @ slope @ e[i] - np.trace(slope @ f[i]) - g[i] @ axis
+        )
         if row.parent >= 0:
             d[row.parent] += motion.transform[i] @ d[i]
             e[row.parent] += motion.transform[i] @ e[i]

@@ -19,14 +19,16 @@ from human_model.frames import quaternion_from_matrix
 from human_model.motion import FRAMES, POINTS, BodyMotion
 from human_model.tables import length_sum, read_table
 from human_model.tree import TreeArrays, build_tree, segment_points
-
-Array = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+from human_model.typing import Array, IntArray
 
 #: Shape of one sample of the forces of a motion, and what stands for one that is not given.
 _LEFT_OUT: dict[str, tuple[tuple[int, ...], float]] = {
-    'ground_force': ((2, 3), 0.0), 'cop': ((2, 3), np.nan), 'free_moment': ((2, 3), 0.0),
-    'hand_force': ((2, 3), 0.0), 'box_position': ((3,), np.nan)}
+    'ground_force': ((2, 3), 0.0),
+    'cop': ((2, 3), np.nan),
+    'free_moment': ((2, 3), 0.0),
+    'hand_force': ((2, 3), 0.0),
+    'box_position': ((3,), np.nan),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,17 +81,26 @@ class Skeleton:
         self.tree: TreeArrays = build_tree(self.chain, parameters)
         self.coordinates: tuple[str, ...] = self.chain.coordinates
         self.segments: tuple[str, ...] = parameters.segments
-        limits = {row['coordinate']: (float(row['lower']), float(row['upper']))
-                  for row in read_table('joint_limits') if row['skeleton'] == name}
+        limits = {
+            row['coordinate']: (float(row['lower']), float(row['upper']))
+            for row in read_table('joint_limits')
+            if row['skeleton'] == name
+        }
         if set(limits) != set(self.coordinates):
             raise ChainError(f'joint_limits.csv: coordinates of {name} differ from its chain')
         #: Lower and upper limit (n_q, 2) of each coordinate [rad or m].
         self.limits: Array = np.array([limits[c] for c in self.coordinates])
-        located = {row['point']: (row['segment'], np.array([
-            length_sum(row[axis], parameters.lengths) for axis in 'xyz']))
-            for row in read_table('points') if row['skeleton'] == name}
-        frames = {row['frame']: row['segment'] for row in read_table('frames')
-                  if row['skeleton'] == name}
+        located = {
+            row['point']: (
+                row['segment'],
+                np.array([length_sum(row[axis], parameters.lengths) for axis in 'xyz']),
+            )
+            for row in read_table('points')
+            if row['skeleton'] == name
+        }
+        frames = {
+            row['frame']: row['segment'] for row in read_table('frames') if row['skeleton'] == name
+        }
         self._points = {point: located[point] for point in POINTS}
         self.point_segment, self.point_local = segment_points(self._points, self.segments)
         self.frame_segment = np.array([self.segments.index(frames[frame]) for frame in FRAMES])
@@ -151,14 +162,18 @@ class Skeleton:
         block = self._block('q', q)
         if not self.uses_compiled:
             rotation, _ = tree_kinematics.segment_frames(self.tree, block)
-            return (tree_kinematics.point_positions(
-                        self.tree, block, self.point_segment, self.point_local),
-                    quaternion_from_matrix(rotation[:, self.frame_segment]))
+            return (
+                tree_kinematics.point_positions(
+                    self.tree, block, self.point_segment, self.point_local
+                ),
+                quaternion_from_matrix(rotation[:, self.frame_segment]),
+            )
         # Numba loads for long.
         from human_model.compiled_blocks import points_and_frames
 
-        points, frames = points_and_frames(self.tree, block, self.point_segment,
-                                           self.point_local, self.frame_segment)
+        points, frames = points_and_frames(
+            self.tree, block, self.point_segment, self.point_local, self.frame_segment
+        )
         return points, frames
 
     def point_jacobian(self, q: npt.ArrayLike, segment: str, local: npt.ArrayLike) -> Array:
@@ -187,9 +202,14 @@ class Skeleton:
             wrench[at, 3:] += np.asarray(load.moment, dtype=np.float64)
         return wrench
 
-    def inverse_dynamics(self, q: npt.ArrayLike, qd: npt.ArrayLike, qdd: npt.ArrayLike,
-                         external: Sequence[ExternalForce] = (),
-                         gravity: float = GRAVITY) -> Array:
+    def inverse_dynamics(
+        self,
+        q: npt.ArrayLike,
+        qd: npt.ArrayLike,
+        qdd: npt.ArrayLike,
+        external: Sequence[ExternalForce] = (),
+        gravity: float = GRAVITY,
+    ) -> Array:
         """Generalised forces (n_q,) [N m; N for translations] that make this motion.
 
         ``external`` are forces on segments, gravity not among them. The first coordinates' values
@@ -198,12 +218,24 @@ class Skeleton:
         from human_model import compiled
 
         return compiled.newton_euler(
-            self.tree, self._vector('q', q), self._vector('qd', qd), self._vector('qdd', qdd),
-            self.wrenches(external), gravity)
+            self.tree,
+            self._vector('q', q),
+            self._vector('qd', qd),
+            self._vector('qdd', qdd),
+            self.wrenches(external),
+            gravity,
+        )
 
-    def body_motion(self, time: npt.ArrayLike, q: npt.ArrayLike, qd: npt.ArrayLike,
-                    qdd: npt.ArrayLike, *, places: tuple[Array, Array] | None = None,
-                    **forces: Any) -> BodyMotion:
+    def body_motion(
+        self,
+        time: npt.ArrayLike,
+        q: npt.ArrayLike,
+        qd: npt.ArrayLike,
+        qdd: npt.ArrayLike,
+        *,
+        places: tuple[Array, Array] | None = None,
+        **forces: Any,
+    ) -> BodyMotion:
         """Motion block of coordinates (n, n_q) and their rates.
 
         ``places``: what `points_and_frames` gave for these coordinates, if it was asked already.
@@ -215,13 +247,26 @@ class Skeleton:
         unknown = sorted(set(forces) - set(_LEFT_OUT))
         if unknown:
             raise MotionError(f'body_motion: unknown field {unknown[0]!r}')
-        values = {name: np.full((len(stamps), *shape), fill) if forces.get(name) is None
-                  else forces[name] for name, (shape, fill) in _LEFT_OUT.items()}
+        values = {
+            name: np.full((len(stamps), *shape), fill)
+            if forces.get(name) is None
+            else forces[name]
+            for name, (shape, fill) in _LEFT_OUT.items()
+        }
         points, frames = self.points_and_frames(position) if places is None else places
         return BodyMotion(
-            time=stamps, skeleton=self.name, coordinates=self.coordinates, position=position,
-            velocity=self._block('qd', qd), acceleration=self._block('qdd', qdd),
-            point_names=POINTS, points=points, frame_names=FRAMES, frames=frames, **values)
+            time=stamps,
+            skeleton=self.name,
+            coordinates=self.coordinates,
+            position=position,
+            velocity=self._block('qd', qd),
+            acceleration=self._block('qdd', qdd),
+            point_names=POINTS,
+            points=points,
+            frame_names=FRAMES,
+            frames=frames,
+            **values,
+        )
 
     def _segment_frames(self, q: Array) -> tuple[Array, Array]:
         if not self.uses_compiled:
@@ -245,8 +290,10 @@ class Skeleton:
     def _vector(self, name: str, value: npt.ArrayLike) -> Array:
         vector = np.ascontiguousarray(value, dtype=np.float64)
         if vector.shape != (len(self.coordinates),):
-            raise MotionError(f'{self.name}: {name} must have shape ({len(self.coordinates)},), '
-                              f'got {vector.shape}')
+            raise MotionError(
+                f'{self.name}: {name} must have shape ({len(self.coordinates)},), '
+                f'got {vector.shape}'
+            )
         if not np.all(np.isfinite(vector)):
             bad = self.coordinates[int(np.argmin(np.isfinite(vector)))]
             raise MotionError(f'{self.name}: {name}[{bad}] is not finite')
@@ -257,6 +304,8 @@ class Skeleton:
         if block.ndim == 1:
             block = block[None]
         if block.ndim != 2 or block.shape[1] != len(self.coordinates):
-            raise MotionError(f'{self.name}: {name} must have shape (n, {len(self.coordinates)}), '
-                              f'got {block.shape}')
+            raise MotionError(
+                f'{self.name}: {name} must have shape (n, {len(self.coordinates)}), '
+                f'got {block.shape}'
+            )
         return block

@@ -24,8 +24,7 @@ from human_model.constants import GRAVITY
 from human_model.errors import StrengthError
 from human_model.subject import Subject
 from human_model.tables import read_table
-
-Array = npt.NDArray[np.float64]
+from human_model.typing import Array
 
 #: Bound [N m] of one limb's joint torque where no strength is published: no strength but a number
 #: that is large against every measured peak (the largest is the trunk's 328.5 N m).
@@ -71,16 +70,22 @@ def surface(coefficients: Any, q: Any, v: Any) -> Any:
     """
     angle = peak(q, coefficients[2], coefficients[3])
     speed = peak(v, coefficients[5], coefficients[6])
-    return (coefficients[0] + coefficients[1] * angle + coefficients[4] * speed
-            + coefficients[7] * angle * speed)
+    return (
+        coefficients[0]
+        + coefficients[1] * angle
+        + coefficients[4] * speed
+        + coefficients[7] * angle * speed
+    )
 
 
 def surface_gradient(coefficients: npt.ArrayLike, q: Array, v: Array) -> tuple[Array, Array]:
     """Differentiate `surface` with respect to q and to v."""
     c = np.asarray(coefficients, dtype=np.float64)
     angle, speed = peak(np.asarray(q), c[2], c[3]), peak(np.asarray(v), c[5], c[6])
-    return (np.asarray((c[1] + c[7] * speed) * peak_slope(q, c[2], c[3])),
-            np.asarray((c[4] + c[7] * angle) * peak_slope(v, c[5], c[6])))
+    return (
+        np.asarray((c[1] + c[7] * speed) * peak_slope(q, c[2], c[3])),
+        np.asarray((c[4] + c[7] * angle) * peak_slope(v, c[5], c[6])),
+    )
 
 
 def coefficient_sets() -> tuple[str, ...]:
@@ -111,8 +116,9 @@ class StrengthBound:
 
     def __call__(self, q: Any, v: Any) -> Any:
         """Torque limit [N m] at coordinate value q [rad] and speed v [rad/s]."""
-        return self.magnitude * surface(self.coefficients, self.angle_factor * q,
-                                        self.speed_factor * v)
+        return self.magnitude * surface(
+            self.coefficients, self.angle_factor * q, self.speed_factor * v
+        )
 
 
 class JointStrength:
@@ -134,18 +140,22 @@ class JointStrength:
         If the set is unknown, a row is missing, or z CV <= -1 leaves no strength.
     """
 
-    def __init__(self, skeleton: str, subject: Subject,
-                 coefficient_set: str = 'anderson2007_nonneg') -> None:
+    def __init__(
+        self, skeleton: str, subject: Subject, coefficient_set: str = 'anderson2007_nonneg'
+    ) -> None:
         if coefficient_set not in coefficient_sets():
-            raise StrengthError(f'no coefficient set named {coefficient_set!r}; there are '
-                                + ', '.join(coefficient_sets()))
+            raise StrengthError(
+                f'no coefficient set named {coefficient_set!r}; there are '
+                + ', '.join(coefficient_sets())
+            )
         self.skeleton = skeleton
         self.coefficient_set = coefficient_set
         bounds: dict[str, dict[str, StrengthBound]] = {}
         for row in read_table('strength_map'):
             if row['skeleton'] == skeleton:
                 bounds.setdefault(row['coordinate'], {})[row['bound']] = _bound(
-                    row, subject, coefficient_set)
+                    row, subject, coefficient_set
+                )
         if not bounds:
             raise StrengthError(f'strength_map.csv has no skeleton named {skeleton!r}')
         #: Coordinates with a torque limit: all but those of the free pelvis.
@@ -165,8 +175,9 @@ class JointStrength:
         """
         return self.bound(coordinate, 'lower')(q, v), self.bound(coordinate, 'upper')(q, v)
 
-    def limit_arrays(self, coordinates: tuple[str, ...], q: npt.ArrayLike, v: npt.ArrayLike,
-                     ) -> tuple[Array, Array]:
+    def limit_arrays(
+        self, coordinates: tuple[str, ...], q: npt.ArrayLike, v: npt.ArrayLike
+    ) -> tuple[Array, Array]:
         """Lower and upper limits (..., n_q) [N m] of all coordinates of a skeleton.
 
         The free pelvis has no actuator; its columns are -inf and inf.
@@ -185,22 +196,35 @@ def _bound(row: Mapping[str, str], subject: Subject, coefficient_set: str) -> St
     factors = float(row['angle_factor']), float(row['speed_factor'])
     if row['joint'] == 'none':
         return StrengthBound(_CONSTANT, sign * copies * LARGE, *factors, row['source'])
-    found = [data for data in read_table('strength_surfaces')
-             if data['set'] == coefficient_set and data['joint'] == row['joint']
-             and data['direction'] == row['direction'] and data['sex'] == subject.sex]
+    found = [
+        data
+        for data in read_table('strength_surfaces')
+        if data['set'] == coefficient_set
+        and data['joint'] == row['joint']
+        and data['direction'] == row['direction']
+        and data['sex'] == subject.sex
+    ]
     if not found:
-        raise StrengthError(f'strength_surfaces.csv, set {coefficient_set}: no row for '
-                            f'{row["joint"]} {row["direction"]}, {subject.sex}')
+        raise StrengthError(
+            f'strength_surfaces.csv, set {coefficient_set}: no row for '
+            f'{row["joint"]} {row["direction"]}, {subject.sex}'
+        )
     data = min(found, key=lambda item: _years_off(item, subject.age))
     scale = float(data['scale'])
     if data['unit'] == 'mgh':
         scale *= subject.mass * GRAVITY * subject.stature
     grade = 1.0 + subject.strength_z * float(data['cv'])
     if grade <= 0.0:
-        raise StrengthError(f'subject.strength_z: {subject.strength_z:g} with CV {data["cv"]} '
-                            f'leaves no {row["joint"]} {row["direction"]} strength')
-    return StrengthBound(tuple(float(data[f'c{k}']) for k in range(1, 9)),
-                         sign * copies * scale * grade, *factors, data['source'])
+        raise StrengthError(
+            f'subject.strength_z: {subject.strength_z:g} with CV {data["cv"]} '
+            f'leaves no {row["joint"]} {row["direction"]} strength'
+        )
+    return StrengthBound(
+        tuple(float(data[f'c{k}']) for k in range(1, 9)),
+        sign * copies * scale * grade,
+        *factors,
+        data['source'],
+    )
 
 
 def _years_off(row: Mapping[str, str], age: float) -> float:

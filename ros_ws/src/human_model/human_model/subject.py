@@ -69,8 +69,10 @@ class Calibration:
         object.__setattr__(self, 'lengths', dict(self.lengths))
         n = len(self.marker_names)
         if len(self.segments) != n or offsets.shape != (n, 3):
-            raise SubjectError(f'calibration: {n} marker names, {len(self.segments)} segments and '
-                               f'local_offsets of shape {offsets.shape} do not belong together')
+            raise SubjectError(
+                f'calibration: {n} marker names, {len(self.segments)} segments and '
+                f'local_offsets of shape {offsets.shape} do not belong together'
+            )
         if len(set(self.marker_names)) != n:
             raise SubjectError('calibration.marker_names: a name occurs twice')
         if not np.all(np.isfinite(offsets)):
@@ -80,9 +82,13 @@ class Calibration:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain dictionary (lists, numbers, strings) of the calibration."""
-        return {'marker_names': list(self.marker_names), 'segments': list(self.segments),
-                'local_offsets': self.local_offsets.tolist(), 'lengths': dict(self.lengths),
-                'residual_rms': float(self.residual_rms)}
+        return {
+            'marker_names': list(self.marker_names),
+            'segments': list(self.segments),
+            'local_offsets': self.local_offsets.tolist(),
+            'lengths': dict(self.lengths),
+            'residual_rms': float(self.residual_rms),
+        }
 
     @classmethod
     def from_dict(cls, fields: Mapping[str, Any]) -> 'Calibration':
@@ -90,9 +96,13 @@ class Calibration:
         for name in ('marker_names', 'segments', 'local_offsets'):
             if name not in fields:
                 raise SubjectError(f'calibration.{name}: missing')
-        return cls(tuple(fields['marker_names']), tuple(fields['segments']),
-                   np.asarray(fields['local_offsets'], dtype=np.float64).reshape(-1, 3),
-                   dict(fields.get('lengths', {})), float(fields.get('residual_rms', 0.0)))
+        return cls(
+            tuple(fields['marker_names']),
+            tuple(fields['segments']),
+            np.asarray(fields['local_offsets'], dtype=np.float64).reshape(-1, 3),
+            dict(fields.get('lengths', {})),
+            float(fields.get('residual_rms', 0.0)),
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,18 +147,23 @@ class Subject:
         for name, (low, high, unit) in RANGES.items():
             value = _real(name, getattr(self, name))
             if not low <= value <= high:
-                raise SubjectError(f'subject.{name}: {value:g} {unit} is outside of '
-                                   f'{low:g} to {high:g} {unit}, the range this model accepts')
+                raise SubjectError(
+                    f'subject.{name}: {value:g} {unit} is outside of '
+                    f'{low:g} to {high:g} {unit}, the range this model accepts'
+                )
             object.__setattr__(self, name, value)
         if not isinstance(self.lengths, Mapping):
-            raise SubjectError('subject.lengths: lengths by name are needed, '
-                               f'got {self.lengths!r}')
+            raise SubjectError(
+                f'subject.lengths: lengths by name are needed, got {self.lengths!r}'
+            )
         lengths = {}
         for name, length in self.lengths.items():
             value = _real(f'lengths[{name}]', length)
             if not LENGTH_RANGE[0] <= value <= LENGTH_RANGE[1]:
-                raise SubjectError(f'subject.lengths[{name}]: {value:g} m is outside of '
-                                   f'{LENGTH_RANGE[0]:g} to {LENGTH_RANGE[1]:g} m')
+                raise SubjectError(
+                    f'subject.lengths[{name}]: {value:g} m is outside of '
+                    f'{LENGTH_RANGE[0]:g} to {LENGTH_RANGE[1]:g} m'
+                )
             lengths[str(name)] = value
         object.__setattr__(self, 'lengths', lengths)
         if self.calibration is not None and not isinstance(self.calibration, Calibration):
@@ -156,10 +171,16 @@ class Subject:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain dictionary (for YAML or JSON) of the subject."""
-        return {'pseudonym': self.pseudonym, 'sex': self.sex, 'mass': self.mass,
-                'stature': self.stature, 'age': self.age, 'strength_z': self.strength_z,
-                'lengths': dict(self.lengths),
-                'calibration': None if self.calibration is None else self.calibration.to_dict()}
+        return {
+            'pseudonym': self.pseudonym,
+            'sex': self.sex,
+            'mass': self.mass,
+            'stature': self.stature,
+            'age': self.age,
+            'strength_z': self.strength_z,
+            'lengths': dict(self.lengths),
+            'calibration': None if self.calibration is None else self.calibration.to_dict(),
+        }
 
     @classmethod
     def from_dict(cls, fields: Mapping[str, Any]) -> 'Subject':
@@ -170,8 +191,16 @@ class Subject:
         SubjectError
             If a field is missing, unknown or out of range.
         """
-        known = {'pseudonym', 'sex', 'mass', 'stature', 'age', 'strength_z', 'lengths',
-                 'calibration'}
+        known = {
+            'pseudonym',
+            'sex',
+            'mass',
+            'stature',
+            'age',
+            'strength_z',
+            'lengths',
+            'calibration',
+        }
         unknown = sorted(set(fields) - known)
         if unknown:
             raise SubjectError(f'subject: unknown field {unknown[0]!r}')

@@ -18,15 +18,11 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from human_model.anthropometry import SegmentParameters
 from human_model.dh import Chain
 from human_model.errors import ChainError
-
-Array = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
-BoolArray = npt.NDArray[np.bool_]
+from human_model.typing import Array, BoolArray, IntArray
 
 REVOLUTE = 0
 PRISMATIC = 1
@@ -98,8 +94,10 @@ def build_tree(chain: Chain, parameters: SegmentParameters) -> TreeArrays:
         If the chain's segments and the parameters' differ.
     """
     if set(chain.segments) != set(parameters.segments):
-        raise ChainError(f'{chain.name}: segments {sorted(set(chain.segments))} of the chain and '
-                         f'{sorted(set(parameters.segments))} of the parameters differ')
+        raise ChainError(
+            f'{chain.name}: segments {sorted(set(chain.segments))} of the chain and '
+            f'{sorted(set(parameters.segments))} of the parameters differ'
+        )
     neutral = chain.frames(np.zeros(len(chain.coordinates)))
     body_of_row: dict[int, int] = {-1: -1}
     parent: list[int] = []
@@ -117,8 +115,9 @@ def build_tree(chain: Chain, parameters: SegmentParameters) -> TreeArrays:
         axis.append(row.sign * before[:3, 2])
         position.append(before[:3, 3])
     n = len(parent)
-    offset = [position[j] - (position[parent[j]] if parent[j] >= 0 else np.zeros(3))
-              for j in range(n)]
+    offset = [
+        position[j] - (position[parent[j]] if parent[j] >= 0 else np.zeros(3)) for j in range(n)
+    ]
     moves = np.zeros((n, n), dtype=np.bool_)
     for j in range(n):
         if parent[j] >= 0:
@@ -127,17 +126,27 @@ def build_tree(chain: Chain, parameters: SegmentParameters) -> TreeArrays:
     rows, origins = row_segments(chain)
     bodies = [body_of_row[rows[name]] for name in parameters.segments]
     return TreeArrays(
-        parent=np.array(parent, dtype=np.int64), kind=np.array(kind, dtype=np.int64),
-        axis=_clean(axis), offset=_clean(offset),
+        parent=np.array(parent, dtype=np.int64),
+        kind=np.array(kind, dtype=np.int64),
+        axis=_clean(axis),
+        offset=_clean(offset),
         segment_body=np.array(bodies, dtype=np.int64),
-        segment_offset=_clean([origins[name] - position[body]
-                               for name, body in zip(parameters.segments, bodies, strict=True)]),
-        mass=np.array(parameters.mass), com=np.array(parameters.com),
-        inertia=np.array(parameters.inertia), moves=moves)
+        segment_offset=_clean(
+            [
+                origins[name] - position[body]
+                for name, body in zip(parameters.segments, bodies, strict=True)
+            ]
+        ),
+        mass=np.array(parameters.mass),
+        com=np.array(parameters.com),
+        inertia=np.array(parameters.inertia),
+        moves=moves,
+    )
 
 
-def segment_points(points: Mapping[str, tuple[str, Array]], segments: tuple[str, ...],
-                   ) -> tuple[IntArray, Array]:
+def segment_points(
+    points: Mapping[str, tuple[str, Array]], segments: tuple[str, ...]
+) -> tuple[IntArray, Array]:
     """Segment index (n,) and local position (n, 3) [m] of named points."""
     index = np.array([segments.index(segment) for segment, _ in points.values()], dtype=np.int64)
     local = np.array([position for _, position in points.values()], dtype=np.float64)

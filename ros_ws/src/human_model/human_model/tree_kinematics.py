@@ -7,12 +7,9 @@ numba takes longer than predicting a lift, and the sagittal skeleton does withou
 """
 
 import numpy as np
-import numpy.typing as npt
 
 from human_model.tree import PRISMATIC, TreeArrays
-
-Array = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+from human_model.typing import Array, IntArray
 
 
 def segment_frames(tree: TreeArrays, q: Array) -> tuple[Array, Array]:
@@ -26,9 +23,9 @@ def segment_frames(tree: TreeArrays, q: Array) -> tuple[Array, Array]:
         at = np.zeros((n, 3)) if p < 0 else origin[p]
         if tree.kind[j] == PRISMATIC:
             rotation[j] = base
-            origin[j] = at + (base @ (tree.offset[j] + tree.axis[j] * q[:, j, None])[..., None])[
-                ..., 0
-            ]
+            origin[j] = (
+                at + (base @ (tree.offset[j] + tree.axis[j] * q[:, j, None])[..., None])[..., 0]
+            )
         else:
             rotation[j] = base @ _rotations(tree.axis[j], q[:, j])
             origin[j] = at + base @ tree.offset[j]

@@ -25,8 +25,7 @@ from human_model.skeleton_3d import Skeleton3D
 from human_model.strength import JointStrength
 from human_model.subject import Subject
 from human_model.tree import PRISMATIC
-
-Array = npt.NDArray[np.float64]
+from human_model.typing import Array
 
 #: First link: the laboratory's frame.
 WORLD = 'world'
@@ -48,8 +47,9 @@ def body_names(skeleton: Skeleton) -> tuple[str, ...]:
     """Return the link of each coordinate: the segment it carries, or ``<coordinate>_link``."""
     tree = skeleton.tree
     names = [f'{coordinate}_link' for coordinate in skeleton.coordinates]
-    for segment, body, offset in zip(skeleton.segments, tree.segment_body, tree.segment_offset,
-                                     strict=True):
+    for segment, body, offset in zip(
+        skeleton.segments, tree.segment_body, tree.segment_offset, strict=True
+    ):
         if not offset.any():
             names[int(body)] = segment
     return tuple(names)
@@ -58,9 +58,13 @@ def body_names(skeleton: Skeleton) -> tuple[str, ...]:
 def fixed_segments(skeleton: Skeleton) -> dict[str, tuple[str, Array]]:
     """Return link and place in it (3,) [m] of each segment that has no joint of its own."""
     bodies, tree = body_names(skeleton), skeleton.tree
-    return {segment: (bodies[int(body)], offset)
-            for segment, body, offset in zip(skeleton.segments, tree.segment_body,
-                                             tree.segment_offset, strict=True) if offset.any()}
+    return {
+        segment: (bodies[int(body)], offset)
+        for segment, body, offset in zip(
+            skeleton.segments, tree.segment_body, tree.segment_offset, strict=True
+        )
+        if offset.any()
+    }
 
 
 def joint_effort(skeleton: Skeleton, strength: JointStrength) -> dict[str, float]:
@@ -108,13 +112,24 @@ def urdf(skeleton: Skeleton, name: str, effort: Effort | None = None) -> str:
         _link(robot, skeleton, body)
     for j, coordinate in enumerate(skeleton.coordinates):
         parent = int(tree.parent[j])
-        joint = _joint(robot, coordinate, 'prismatic' if tree.kind[j] == PRISMATIC else 'revolute',
-                       bodies[parent] if parent >= 0 else WORLD, bodies[j], tree.offset[j])
+        joint = _joint(
+            robot,
+            coordinate,
+            'prismatic' if tree.kind[j] == PRISMATIC else 'revolute',
+            bodies[parent] if parent >= 0 else WORLD,
+            bodies[j],
+            tree.offset[j],
+        )
         ElementTree.SubElement(joint, 'axis', xyz=_text(tree.axis[j]))
         lower, upper = skeleton.limits[j]
         ElementTree.SubElement(
-            joint, 'limit', lower=_text(lower), upper=_text(upper),
-            effort=_text((effort or {}).get(coordinate, 0.0)), velocity=_text(NO_SPEED_LIMIT))
+            joint,
+            'limit',
+            lower=_text(lower),
+            upper=_text(upper),
+            effort=_text((effort or {}).get(coordinate, 0.0)),
+            velocity=_text(NO_SPEED_LIMIT),
+        )
     for segment, (body, offset) in fixed_segments(skeleton).items():
         _link(robot, skeleton, segment)
         _joint(robot, f'{segment}_fixed', 'fixed', body, segment, offset)
@@ -132,8 +147,11 @@ def _link(robot: ElementTree.Element, skeleton: Skeleton, name: str) -> None:
     _origin(inertial, parameters.com[i])
     ElementTree.SubElement(inertial, 'mass', value=_text(parameters.mass[i]))
     tensor = parameters.inertia[i]
-    ElementTree.SubElement(inertial, 'inertia', {
-        f'i{"xyz"[a]}{"xyz"[b]}': _text(tensor[a, b]) for a in range(3) for b in range(a, 3)})
+    ElementTree.SubElement(
+        inertial,
+        'inertia',
+        {f'i{"xyz"[a]}{"xyz"[b]}': _text(tensor[a, b]) for a in range(3) for b in range(a, 3)},
+    )
     ends = _ends(skeleton, name)
     total = sum(float(np.linalg.norm(end)) for end in ends)
     for end in ends:
@@ -150,8 +168,11 @@ def _ends(skeleton: Skeleton, segment: str) -> list[Array]:
         ends += [tree.offset[j] for j in range(len(tree.parent)) if tree.parent[j] == body]
         ends += [offset for link, offset in fixed_segments(skeleton).values() if link == segment]
     ends += list(skeleton.point_local[skeleton.point_segment == i])
-    return [np.asarray(end) for k, end in enumerate(ends) if end.any()
-            and not any(np.allclose(end, other) for other in ends[:k])]
+    return [
+        np.asarray(end)
+        for k, end in enumerate(ends)
+        if end.any() and not any(np.allclose(end, other) for other in ends[:k])
+    ]
 
 
 def _cylinder(link: ElementTree.Element, end: Array, radius: float) -> None:
@@ -163,8 +184,9 @@ def _cylinder(link: ElementTree.Element, end: Array, radius: float) -> None:
     ElementTree.SubElement(geometry, 'cylinder', radius=_text(radius), length=_text(length))
 
 
-def _joint(robot: ElementTree.Element, name: str, kind: str, parent: str, child: str,
-           place: Array) -> ElementTree.Element:
+def _joint(
+    robot: ElementTree.Element, name: str, kind: str, parent: str, child: str, place: Array
+) -> ElementTree.Element:
     joint = ElementTree.SubElement(robot, 'joint', name=name, type=kind)
     _origin(joint, place)
     ElementTree.SubElement(joint, 'parent', link=parent)
@@ -172,8 +194,9 @@ def _joint(robot: ElementTree.Element, name: str, kind: str, parent: str, child:
     return joint
 
 
-def _origin(parent: ElementTree.Element, place: Array,
-            angles: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> None:
+def _origin(
+    parent: ElementTree.Element, place: Array, angles: tuple[float, float, float] = (0.0, 0.0, 0.0)
+) -> None:
     ElementTree.SubElement(parent, 'origin', xyz=_text(place), rpy=_text(angles))
 
 

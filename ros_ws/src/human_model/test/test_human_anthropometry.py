@@ -28,8 +28,18 @@ def test_segments_weigh_what_the_subject_weighs(sex, mass, stature):
     assert parameters.total_mass == pytest.approx(mass, rel=1e-12)
     assert sagittal_parameters(parameters).total_mass == pytest.approx(mass, rel=1e-12)
     lengths = parameters.lengths
-    height = sum(lengths[name] for name in (
-        'ankle_height', 'shank', 'thigh', 'l5s1_height', 't12l1_height', 'c7_height', 'head_neck'))
+    height = sum(
+        lengths[name]
+        for name in (
+            'ankle_height',
+            'shank',
+            'thigh',
+            'l5s1_height',
+            't12l1_height',
+            'c7_height',
+            'head_neck',
+        )
+    )
     assert height == pytest.approx(stature, abs=1e-9)
 
 
@@ -45,8 +55,13 @@ def test_mean_soldier_has_the_survey_s_mean_dimensions():
 def test_lengths_are_near_those_of_another_study():
     """De Leva 1996, joint centre to joint centre, 100 men of 1.741 m and 73.0 kg."""
     lengths, _ = segment_lengths(Subject('mean', 'male', 73.0, 1.741, 24))
-    for name, published in (('thigh', 0.4222), ('shank', 0.4403), ('forearm', 0.2689),
-                            ('upper_arm', 0.2817), ('hand', 0.1879)):
+    for name, published in (
+        ('thigh', 0.4222),
+        ('shank', 0.4403),
+        ('forearm', 0.2689),
+        ('upper_arm', 0.2817),
+        ('hand', 0.1879),
+    ):
         assert lengths[name] == pytest.approx(published, abs=0.03), name
     hip_to_c7 = sum(lengths[name] for name in ('l5s1_height', 't12l1_height', 'c7_height'))
     assert hip_to_c7 == pytest.approx(0.6033, abs=0.01)
@@ -63,8 +78,11 @@ def test_centre_of_mass_of_the_upper_body_is_where_another_study_puts_it():
     parameters = segment_parameters(Subject('mean', 'male', 73.0, 1.741, 24))
     body = Skeleton3D(parameters)
     frames = body.forward(body.standing())
-    upper = [i for i, name in enumerate(parameters.segments)
-             if name.startswith(('lumbar', 'thorax', 'head', 'upper_arm', 'forearm', 'hand'))]
+    upper = [
+        i
+        for i, name in enumerate(parameters.segments)
+        if name.startswith(('lumbar', 'thorax', 'head', 'upper_arm', 'forearm', 'hand'))
+    ]
     heights = np.array([frames[i, 2, 3] + parameters.com[i, 2] for i in upper])
     mass = parameters.mass[upper]
     assert mass.sum() / 73.0 == pytest.approx(0.491, abs=0.01)
@@ -84,10 +102,16 @@ def test_mass_fractions_are_those_of_table_2_2(man):
     assert fraction['foot'] + fraction['toes'] == pytest.approx(0.0238, abs=0.001)
 
 
-@pytest.mark.parametrize(('segment', 'length', 'published'), [
-    ('upper_arm_r', 'upper_arm', 0.436), ('forearm_r', 'forearm', 0.430),
-    ('thigh_r', 'thigh', 0.433), ('shank_r', 'shank', 0.433), ('hand_r', 'hand', 0.3624),
-])
+@pytest.mark.parametrize(
+    ('segment', 'length', 'published'),
+    [
+        ('upper_arm_r', 'upper_arm', 0.436),
+        ('forearm_r', 'forearm', 0.430),
+        ('thigh_r', 'thigh', 0.433),
+        ('shank_r', 'shank', 0.433),
+        ('hand_r', 'hand', 0.3624),
+    ],
+)
 def test_centres_of_mass_lie_where_other_studies_put_them(man, segment, length, published):
     """Distance from the proximal joint by length: Winter's table, for the hand de Leva 1996.
 
@@ -104,10 +128,16 @@ def test_torso_is_that_of_the_undivided_study(man):
     lengths = parameters.lengths
     whole = sum(lengths[name] for name in ('t12l1_height', 'c7_height'))
     thorax, lumbar = parameters.index('thorax'), parameters.index('lumbar')
-    mass, com, _ = combine([
-        (parameters.mass[lumbar], parameters.com[lumbar], parameters.inertia[lumbar]),
-        (parameters.mass[thorax], parameters.com[thorax] + [0, 0, lengths['t12l1_height']],
-         parameters.inertia[thorax])])
+    mass, com, _ = combine(
+        [
+            (parameters.mass[lumbar], parameters.com[lumbar], parameters.inertia[lumbar]),
+            (
+                parameters.mass[thorax],
+                parameters.com[thorax] + [0, 0, lengths['t12l1_height']],
+                parameters.inertia[thorax],
+            ),
+        ]
+    )
     assert mass / man.mass == pytest.approx(0.333, abs=0.001)
     assert (whole - com[2]) / whole == pytest.approx(0.42, abs=0.02)
 
@@ -128,24 +158,30 @@ def test_foot_and_toes_make_dumas_foot(man):
     parameters = segment_parameters(man)
     lengths = parameters.lengths
     parts = []
-    for name, at in (('foot_r', np.zeros(3)),
-                     ('toes_r', np.array([lengths['ankle_mtp'], 0, -lengths['mtp_drop']]))):
+    for name, at in (
+        ('foot_r', np.zeros(3)),
+        ('toes_r', np.array([lengths['ankle_mtp'], 0, -lengths['mtp_drop']])),
+    ):
         i = parameters.index(name)
         parts.append((parameters.mass[i], parameters.com[i] + at, parameters.inertia[i]))
     mass, com, inertia = combine(parts)
     size = np.hypot(lengths['ankle_mtp'], lengths['mtp_drop'])
-    row = next(r for r in read_table('dumas_inertia')
-               if (r['sex'], r['segment']) == ('male', 'foot'))
-    assert com == pytest.approx(size * np.array([float(row['com_x']), -float(row['com_z']),
-                                                 float(row['com_y'])]))
+    row = next(
+        r for r in read_table('dumas_inertia') if (r['sex'], r['segment']) == ('male', 'foot')
+    )
+    assert com == pytest.approx(
+        size * np.array([float(row['com_x']), -float(row['com_z']), float(row['com_y'])])
+    )
     assert inertia[1, 1] == pytest.approx(mass * (size * float(row['r_zz'])) ** 2)
 
 
 def test_measured_lengths_replace_regressions(man):
-    calibration = Calibration(('m',), ('thigh_r',), np.zeros((1, 3)),
-                              {'thigh': 0.42, 'shank': 0.40})
-    subject = Subject('p', 'male', man.mass, man.stature, 31, lengths={'shank': 0.43},
-                      calibration=calibration)
+    calibration = Calibration(
+        ('m',), ('thigh_r',), np.zeros((1, 3)), {'thigh': 0.42, 'shank': 0.40}
+    )
+    subject = Subject(
+        'p', 'male', man.mass, man.stature, 31, lengths={'shank': 0.43}, calibration=calibration
+    )
     lengths, sources = segment_lengths(subject)
     assert (lengths['thigh'], lengths['shank']) == (0.42, 0.43)
     assert sources['thigh'] == 'measured'
@@ -163,16 +199,31 @@ def test_unknown_or_impossible_lengths_are_named(man):
 def test_every_number_has_a_source(man):
     parameters = segment_parameters(man)
     assert set(parameters.sources) == {*parameters.lengths, 'mass', 'com', 'inertia'}
-    for table in ('ansur2_regressions', 'dumas_inertia', 'segment_lengths', 'joint_limits',
-                  'strength_surfaces', 'strength_map', 'points', 'frames', 'subjects',
-                  'toes_inertia', 'thesis_lengths', 'thesis_2d_links', 'thesis_3d_links'):
+    for table in (
+        'ansur2_regressions',
+        'dumas_inertia',
+        'segment_lengths',
+        'joint_limits',
+        'strength_surfaces',
+        'strength_map',
+        'points',
+        'frames',
+        'subjects',
+        'toes_inertia',
+        'thesis_lengths',
+        'thesis_2d_links',
+        'thesis_3d_links',
+    ):
         assert all(row['source'] for row in read_table(table)), table
 
 
 def test_inertia_that_no_body_can_have_is_refused():
     one = np.ones(1)
-    for tensor in (np.diag([1.0, 1.0, 3.0]), np.diag([1.0, -1.0, 1.0]),
-                   np.array([[1.0, 0.1, 0], [0, 1.0, 0], [0, 0, 1.0]])):
+    for tensor in (
+        np.diag([1.0, 1.0, 3.0]),
+        np.diag([1.0, -1.0, 1.0]),
+        np.array([[1.0, 0.1, 0], [0, 1.0, 0], [0, 0, 1.0]]),
+    ):
         with pytest.raises(AnthropometryError, match='stone: inertia'):
             SegmentParameters({}, ('stone',), one, np.zeros((1, 3)), tensor[None], {})
     with pytest.raises(AnthropometryError, match='stone: mass'):

@@ -20,14 +20,27 @@ STEP = 0.1
 #: Names without a side hold for both sides; IN is towards the midline.
 IN, OUT = (1, 'in'), (1, 'out')
 MOVES = {
-    'pelvis_tx': ('c7', FORWARD), 'pelvis_ty': ('c7', UP), 'pelvis_tz': ('c7', RIGHT),
-    'pelvis_tilt': ('c7', BACK), 'pelvis_list': ('c7', RIGHT), 'pelvis_rotation': ('toe', LEFT),
-    'lumbar_extension': ('c7', BACK), 'lumbar_bending': ('c7', RIGHT),
-    'thorax_extension': ('c7', BACK), 'thorax_bending': ('c7', RIGHT),
-    'arm_flex': ('hand', FORWARD), 'arm_add': ('hand', IN), 'elbow_flex': ('hand', FORWARD),
-    'wrist_flex': ('hand', IN), 'wrist_dev': ('hand', BACK),
-    'hip_flexion': ('toe', FORWARD), 'hip_adduction': ('toe', IN), 'hip_rotation': ('toe', IN),
-    'knee_angle': ('toe', BACK), 'ankle_angle': ('toe', UP), 'mtp_angle': ('toe', DOWN),
+    'pelvis_tx': ('c7', FORWARD),
+    'pelvis_ty': ('c7', UP),
+    'pelvis_tz': ('c7', RIGHT),
+    'pelvis_tilt': ('c7', BACK),
+    'pelvis_list': ('c7', RIGHT),
+    'pelvis_rotation': ('toe', LEFT),
+    'lumbar_extension': ('c7', BACK),
+    'lumbar_bending': ('c7', RIGHT),
+    'thorax_extension': ('c7', BACK),
+    'thorax_bending': ('c7', RIGHT),
+    'arm_flex': ('hand', FORWARD),
+    'arm_add': ('hand', IN),
+    'elbow_flex': ('hand', FORWARD),
+    'wrist_flex': ('hand', IN),
+    'wrist_dev': ('hand', BACK),
+    'hip_flexion': ('toe', FORWARD),
+    'hip_adduction': ('toe', IN),
+    'hip_rotation': ('toe', IN),
+    'knee_angle': ('toe', BACK),
+    'ankle_angle': ('toe', UP),
+    'mtp_angle': ('toe', DOWN),
 }
 #: Rotations that move no shared point in the neutral posture: world axis of the right side.
 TURNS = {
@@ -57,8 +70,16 @@ def test_every_coordinate_moves_as_anatomy_says(skeleton):
             i = skeleton.parameters.index(f'{segment}_{side}' if side else segment)
             turned = skeleton.forward(q)[i, :3, :3] @ frames[i, :3, :3].T
             expected = np.array(axis, dtype=float) * (-1.0 if side == 'l' else 1.0)
-            spin = np.array([turned[2, 1] - turned[1, 2], turned[0, 2] - turned[2, 0],
-                             turned[1, 0] - turned[0, 1]]) / 2
+            spin = (
+                np.array(
+                    [
+                        turned[2, 1] - turned[1, 2],
+                        turned[0, 2] - turned[2, 0],
+                        turned[1, 0] - turned[0, 1],
+                    ]
+                )
+                / 2
+            )
             assert spin == pytest.approx(np.sin(STEP) * expected, abs=1e-12), coordinate
             continue
         point, (axis, sign) = MOVES[base]
@@ -72,10 +93,16 @@ def test_every_coordinate_moves_as_anatomy_says(skeleton):
 
 def test_only_what_hangs_on_a_joint_moves(body):
     start = body.points(body.standing())
-    for coordinate, still in (('elbow_flex_r', 'elbow_r'), ('knee_angle_l', 'knee_l'),
-                              ('lumbar_extension', 'l5_s1'), ('hip_flexion_r', 'toe_l'),
-                              ('ankle_angle_r', 'ankle_r'), ('mtp_angle_l', 'heel_l'),
-                              ('arm_add_l', 'hand_r'), ('pelvis_rotation', 'pelvis')):
+    for coordinate, still in (
+        ('elbow_flex_r', 'elbow_r'),
+        ('knee_angle_l', 'knee_l'),
+        ('lumbar_extension', 'l5_s1'),
+        ('hip_flexion_r', 'toe_l'),
+        ('ankle_angle_r', 'ankle_r'),
+        ('mtp_angle_l', 'heel_l'),
+        ('arm_add_l', 'hand_r'),
+        ('pelvis_rotation', 'pelvis'),
+    ):
         q = body.standing()
         q[body.index(coordinate)] += STEP
         assert body.points(q)[still] == pytest.approx(start[still], abs=1e-15)
@@ -87,10 +114,21 @@ def test_axes_agree_with_opensim(body):
     Ours are orthogonal; OpenSim's elbow, knee, ankle, subtalar and toe axes are oblique, so the
     angle between them is up to 38 degrees (subtalar), but the sign must be the same.
     """
-    oblique = {'elbow_flex': 14, 'knee_angle': 18, 'ankle_angle': 12, 'subtalar_angle': 39,
-               'mtp_angle': 36, 'pro_sup': 4, 'wrist_flex': 4, 'wrist_dev': 4}
-    renamed = {'L5_S1_Flex_Ext': 'lumbar_extension', 'L5_S1_Lat_Bending': 'lumbar_bending',
-               'L5_S1_axial_rotation': 'lumbar_rotation'}
+    oblique = {
+        'elbow_flex': 14,
+        'knee_angle': 18,
+        'ankle_angle': 12,
+        'subtalar_angle': 39,
+        'mtp_angle': 36,
+        'pro_sup': 4,
+        'wrist_flex': 4,
+        'wrist_dev': 4,
+    }
+    renamed = {
+        'L5_S1_Flex_Ext': 'lumbar_extension',
+        'L5_S1_Lat_Bending': 'lumbar_bending',
+        'L5_S1_axial_rotation': 'lumbar_rotation',
+    }
     path = Path(__file__).parent / 'data' / 'opensim_joint_axes.csv'
     rows = list(csv.DictReader(path.read_text().splitlines()))
     assert len(rows) == 37
@@ -116,22 +154,68 @@ def test_neutral_posture_is_upright_with_level_soles(skeleton):
 
 def test_coordinates_are_in_the_named_order():
     arm = ('arm_flex', 'arm_add', 'arm_rot', 'elbow_flex', 'pro_sup', 'wrist_flex', 'wrist_dev')
-    leg = ('hip_flexion', 'hip_adduction', 'hip_rotation', 'knee_angle', 'ankle_angle',
-           'subtalar_angle', 'mtp_angle')
-    lengths = dict.fromkeys((
-        'l5s1_forward', 'l5s1_height', 't12l1_forward', 't12l1_height', 'shoulder_forward',
-        'shoulder_height', 'shoulder_half_width', 'c7_forward', 'c7_height', 'upper_arm',
-        'forearm', 'hand_grip', 'hip_half_width', 'thigh', 'shank', 'ankle_mtp', 'mtp_drop',
-        'toes'), 0.1)
+    leg = (
+        'hip_flexion',
+        'hip_adduction',
+        'hip_rotation',
+        'knee_angle',
+        'ankle_angle',
+        'subtalar_angle',
+        'mtp_angle',
+    )
+    lengths = dict.fromkeys(
+        (
+            'l5s1_forward',
+            'l5s1_height',
+            't12l1_forward',
+            't12l1_height',
+            'shoulder_forward',
+            'shoulder_height',
+            'shoulder_half_width',
+            'c7_forward',
+            'c7_height',
+            'upper_arm',
+            'forearm',
+            'hand_grip',
+            'hip_half_width',
+            'thigh',
+            'shank',
+            'ankle_mtp',
+            'mtp_drop',
+            'toes',
+        ),
+        0.1,
+    )
     assert load_chain('3d_40dof', lengths).coordinates == (
-        'pelvis_tx', 'pelvis_ty', 'pelvis_tz', 'pelvis_tilt', 'pelvis_list', 'pelvis_rotation',
-        'lumbar_extension', 'lumbar_bending', 'lumbar_rotation',
-        'thorax_extension', 'thorax_bending', 'thorax_rotation',
-        *(f'{name}_r' for name in arm), *(f'{name}_l' for name in arm),
-        *(f'{name}_r' for name in leg), *(f'{name}_l' for name in leg))
+        'pelvis_tx',
+        'pelvis_ty',
+        'pelvis_tz',
+        'pelvis_tilt',
+        'pelvis_list',
+        'pelvis_rotation',
+        'lumbar_extension',
+        'lumbar_bending',
+        'lumbar_rotation',
+        'thorax_extension',
+        'thorax_bending',
+        'thorax_rotation',
+        *(f'{name}_r' for name in arm),
+        *(f'{name}_l' for name in arm),
+        *(f'{name}_r' for name in leg),
+        *(f'{name}_l' for name in leg),
+    )
     assert load_chain('2d_10dof', lengths).coordinates == (
-        'pelvis_tx', 'pelvis_ty', 'pelvis_tilt', 'lumbar_extension', 'arm_flex', 'elbow_flex',
-        'hip_flexion', 'knee_angle', 'ankle_angle', 'mtp_angle')
+        'pelvis_tx',
+        'pelvis_ty',
+        'pelvis_tilt',
+        'lumbar_extension',
+        'arm_flex',
+        'elbow_flex',
+        'hip_flexion',
+        'knee_angle',
+        'ankle_angle',
+        'mtp_angle',
+    )
 
 
 def test_transform_is_the_product_of_its_four_motions(rng):
@@ -161,22 +245,48 @@ def test_derivatives_by_finite_differences(kind, sign):
     assert second == pytest.approx((plus - 2 * here + minus) / h**2, abs=1e-6)
 
 
-@pytest.mark.parametrize(('change', 'words'), [
-    ({'parent': '3'}, 'follow their parents'), ({'kind': 'spherical'}, "kind 'spherical'"),
-    ({'coordinate': ''}, "kind 'revolute' with coordinate ''"), ({'sign': '2'}, "sign '2'"),
-    ({'theta': 'pi/3'}, "theta 'pi/3'"),
-])
+@pytest.mark.parametrize(
+    ('change', 'words'),
+    [
+        ({'parent': '3'}, 'follow their parents'),
+        ({'kind': 'spherical'}, "kind 'spherical'"),
+        ({'coordinate': ''}, "kind 'revolute' with coordinate ''"),
+        ({'sign': '2'}, "sign '2'"),
+        ({'theta': 'pi/3'}, "theta 'pi/3'"),
+    ],
+)
 def test_bad_rows_are_named(monkeypatch, change, words):
-    good = {'row': '1', 'coordinate': 'x', 'kind': 'revolute', 'parent': '0', 'sign': '1',
-            'theta': '0', 'd': '0', 'a': '0', 'alpha': '0', 'segment': '', 'branch': ''}
+    good = {
+        'row': '1',
+        'coordinate': 'x',
+        'kind': 'revolute',
+        'parent': '0',
+        'sign': '1',
+        'theta': '0',
+        'd': '0',
+        'a': '0',
+        'alpha': '0',
+        'segment': '',
+        'branch': '',
+    }
     monkeypatch.setattr(dh, 'read_table', lambda name: ({**good, **change},))
     with pytest.raises(ChainError, match=f'row 1: .*{words}'):
         load_chain('3d_40dof', {})
 
 
 def test_a_coordinate_may_not_occur_twice(monkeypatch):
-    row = {'coordinate': 'x', 'kind': 'revolute', 'parent': '0', 'sign': '1', 'theta': '0',
-           'd': '0', 'a': '0', 'alpha': '0', 'segment': '', 'branch': ''}
+    row = {
+        'coordinate': 'x',
+        'kind': 'revolute',
+        'parent': '0',
+        'sign': '1',
+        'theta': '0',
+        'd': '0',
+        'a': '0',
+        'alpha': '0',
+        'segment': '',
+        'branch': '',
+    }
     monkeypatch.setattr(dh, 'read_table', lambda name: ({**row, 'row': '1'}, {**row, 'row': '2'}))
     with pytest.raises(ChainError, match='twice'):
         load_chain('3d_40dof', {})

@@ -9,11 +9,7 @@ from human_model import compiled
 from human_model.anthropometry import SegmentParameters
 from human_model.compiled_blocks import outer_force
 from human_model.errors import ChainError
-from human_model.recursive import (
-    augmented_inertia,
-    forward_kinematics,
-    recursive_dynamics,
-)
+from human_model.recursive import augmented_inertia, forward_kinematics, recursive_dynamics
 from human_model.skeleton import ExternalForce
 from human_model.skeleton_2d import Skeleton2D
 from human_model.tree import build_tree
@@ -26,9 +22,11 @@ def loads(skeleton):
     names = skeleton.segments
     foot = 'foot_r' if 'foot_r' in names else 'foot'
     hand = 'hand_l' if 'hand_l' in names else 'forearm'
-    return [ExternalForce(foot, [12.0, -7.0, 410.0], [0.08, -0.1, 0.0], [0.0, 0.0, 3.0]),
-            ExternalForce(hand, [5.0, 3.0, -60.0], [0.4, 0.2, 0.9]),
-            ExternalForce(names[0], [1.0, 2.0, 3.0], [0.0, 0.1, 0.9], [4.0, 5.0, 6.0])]
+    return [
+        ExternalForce(foot, [12.0, -7.0, 410.0], [0.08, -0.1, 0.0], [0.0, 0.0, 3.0]),
+        ExternalForce(hand, [5.0, 3.0, -60.0], [0.4, 0.2, 0.9]),
+        ExternalForce(names[0], [1.0, 2.0, 3.0], [0.0, 0.1, 0.9], [4.0, 5.0, 6.0]),
+    ]
 
 
 def random_state(skeleton, rng):
@@ -40,8 +38,9 @@ def test_recursion_and_newton_euler_agree(skeleton, rng):
         q, qd, qdd = random_state(skeleton, rng)
         external = loads(skeleton)
         fast = skeleton.inverse_dynamics(q, qd, qdd, external)
-        slow = recursive_dynamics(skeleton.chain, skeleton.parameters, q, qd, qdd,
-                                  wrench=skeleton.wrenches(external))
+        slow = recursive_dynamics(
+            skeleton.chain, skeleton.parameters, q, qd, qdd, wrench=skeleton.wrenches(external)
+        )
         assert fast == pytest.approx(slow, abs=1e-9)
 
 
@@ -89,8 +88,11 @@ def trajectory(skeleton, t):
     """Return a smooth motion of all coordinates and its two derivatives."""
     k = np.arange(len(skeleton.coordinates))
     amplitude, speed = 0.3 + 0.01 * k, 2.0 + 0.15 * k
-    return (amplitude * np.sin(speed * t + k), amplitude * speed * np.cos(speed * t + k),
-            -amplitude * speed**2 * np.sin(speed * t + k))
+    return (
+        amplitude * np.sin(speed * t + k),
+        amplitude * speed * np.cos(speed * t + k),
+        -amplitude * speed**2 * np.sin(speed * t + k),
+    )
 
 
 def energy(skeleton, t):
@@ -99,8 +101,10 @@ def energy(skeleton, t):
     inertia, mass, com = augmented_inertia(skeleton.chain, skeleton.parameters)
     motion = forward_kinematics(skeleton.chain, q, qd, qdd)
     kinetic = sum(np.trace(b @ i @ b.T) / 2 for b, i in zip(motion.b, inertia, strict=True))
-    potential = sum(m * GRAVITY * motion.point(i, c)[0][2]
-                    for i, (m, c) in enumerate(zip(mass, com, strict=True)))
+    potential = sum(
+        m * GRAVITY * motion.point(i, c)[0][2]
+        for i, (m, c) in enumerate(zip(mass, com, strict=True))
+    )
     return kinetic + potential
 
 
@@ -116,12 +120,14 @@ def test_power_balance(skeleton, time):
         triad = local + np.vstack([np.zeros(3), np.eye(3)])
         jacobian = skeleton.point_jacobian(q, load.segment, triad)
         velocity = jacobian @ qd
-        spin = (velocity[1:] - velocity[0])  # rows: omega x (segment axis)
+        spin = velocity[1:] - velocity[0]  # rows: omega x (segment axis)
         omega = sum(np.cross(frame[:3, k], spin[k]) for k in range(3)) / 2
         power += np.asarray(load.force) @ velocity[0] + np.asarray(load.moment) @ omega
     h = 1e-3
-    rate = (8 * (energy(skeleton, time + h) - energy(skeleton, time - h))
-            - (energy(skeleton, time + 2 * h) - energy(skeleton, time - 2 * h))) / (12 * h)
+    rate = (
+        8 * (energy(skeleton, time + h) - energy(skeleton, time - h))
+        - (energy(skeleton, time + 2 * h) - energy(skeleton, time - 2 * h))
+    ) / (12 * h)
     assert power == pytest.approx(rate, rel=1e-7, abs=1e-5)
 
 
@@ -149,17 +155,20 @@ def leg_only(man, masses):
         i = given.index(name)
         mass[i], com[i] = m, [0, 0, -down]
         inertia[i] = np.diag([i_yy, i_yy, i_yy])
-    return Skeleton2D(SegmentParameters(given.lengths, given.segments, mass, com, inertia,
-                                        given.sources))
+    return Skeleton2D(
+        SegmentParameters(given.lengths, given.segments, mass, com, inertia, given.sources)
+    )
 
 
 def test_pendulum(man):
     """Shank on a fixed knee: tau = (I + m c^2) qdd + m g c sin q."""
     m, c, i_yy, angle, acceleration = 3.0, 0.2, 0.04, 0.6, 5.0
     skeleton = leg_only(man, {'shank': (m, c, i_yy)})
-    tau = skeleton.inverse_dynamics(skeleton.vector({'knee_angle': angle}),
-                                    skeleton.vector({'knee_angle': 7.0}),
-                                    skeleton.vector({'knee_angle': acceleration}))
+    tau = skeleton.inverse_dynamics(
+        skeleton.vector({'knee_angle': angle}),
+        skeleton.vector({'knee_angle': 7.0}),
+        skeleton.vector({'knee_angle': acceleration}),
+    )
     expected = (i_yy + m * c**2) * acceleration + m * GRAVITY * c * np.sin(angle)
     assert tau[skeleton.index('knee_angle')] == pytest.approx(expected)
     assert tau[skeleton.index('ankle_angle')] == pytest.approx(0.0, abs=1e-12)
@@ -172,13 +181,22 @@ def test_double_pendulum(man):
     length = skeleton.parameters.lengths['thigh']
     hip, knee = np.array([0.5, 1.2, -3.0]), np.array([0.9, -2.0, 4.0])  # q, qd, qdd
     a, b = hip, hip - knee  # from the vertical, forward positive
-    tau_b = ((i2 + m2 * c2**2) * b[2] + m2 * c2 * GRAVITY * np.sin(b[0])
-             + m2 * length * c2 * (a[2] * np.cos(b[0] - a[0]) + a[1]**2 * np.sin(b[0] - a[0])))
-    tau_a = ((i1 + m1 * c1**2 + m2 * length**2) * a[2]
-             + (m1 * c1 + m2 * length) * GRAVITY * np.sin(a[0])
-             + m2 * length * c2 * (b[2] * np.cos(a[0] - b[0]) + b[1]**2 * np.sin(a[0] - b[0])))
-    tau = skeleton.inverse_dynamics(*(skeleton.vector({'hip_flexion': h, 'knee_angle': k})
-                                      for h, k in zip(hip, knee, strict=True)))
+    tau_b = (
+        (i2 + m2 * c2**2) * b[2]
+        + m2 * c2 * GRAVITY * np.sin(b[0])
+        + m2 * length * c2 * (a[2] * np.cos(b[0] - a[0]) + a[1] ** 2 * np.sin(b[0] - a[0]))
+    )
+    tau_a = (
+        (i1 + m1 * c1**2 + m2 * length**2) * a[2]
+        + (m1 * c1 + m2 * length) * GRAVITY * np.sin(a[0])
+        + m2 * length * c2 * (b[2] * np.cos(a[0] - b[0]) + b[1] ** 2 * np.sin(a[0] - b[0]))
+    )
+    tau = skeleton.inverse_dynamics(
+        *(
+            skeleton.vector({'hip_flexion': h, 'knee_angle': k})
+            for h, k in zip(hip, knee, strict=True)
+        )
+    )
     assert tau[skeleton.index('knee_angle')] == pytest.approx(-tau_b)
     assert tau[skeleton.index('hip_flexion')] == pytest.approx(tau_a + tau_b)
 
@@ -202,8 +220,9 @@ def test_body_velocities_are_those_of_the_recursion(body, rng):
     r = arm - state[1][b]
     omega, alpha = state[3][b], state[4][b]
     assert state[5][b] + np.cross(omega, r) == pytest.approx(speed)
-    assert state[6][b] + np.cross(alpha, r) + np.cross(
-        omega, np.cross(omega, r)) == pytest.approx(acceleration)
+    assert state[6][b] + np.cross(alpha, r) + np.cross(omega, np.cross(omega, r)) == pytest.approx(
+        acceleration
+    )
 
 
 def test_foreign_segments_are_refused(body, man):

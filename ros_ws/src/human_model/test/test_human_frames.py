@@ -12,8 +12,9 @@ from human_model.errors import HumanModelError
 
 components = st.floats(-1e3, 1e3)
 vectors = st.tuples(components, components, components).map(np.array)
-quaternions = st.tuples(*[st.floats(-1, 1)] * 4).map(np.array).filter(
-    lambda q: np.linalg.norm(q) > 0.1)
+quaternions = (
+    st.tuples(*[st.floats(-1, 1)] * 4).map(np.array).filter(lambda q: np.linalg.norm(q) > 0.1)
+)
 
 
 def test_axes_of_opensim_in_rep_103():
@@ -33,7 +34,8 @@ def test_rotation_commutes_with_the_change_of_axes(quaternion, vector):
     turned = frames.rotation_from_opensim(rotation) @ frames.from_opensim(vector)
     assert turned == pytest.approx(frames.from_opensim(rotation @ vector), abs=1e-9)
     assert frames.rotation_to_opensim(frames.rotation_from_opensim(rotation)) == pytest.approx(
-        rotation)
+        rotation
+    )
 
 
 def test_wrench_turns_force_and_moment():
@@ -75,12 +77,19 @@ def test_stacks_keep_their_shape(rng):
     assert frames.quaternion_from_matrix(matrix).shape == (4, 5, 4)
 
 
-@pytest.mark.parametrize(('function', 'value'), [
-    (frames.from_opensim, [1, 2]), (frames.to_opensim, 3.0),
-    (frames.rotation_from_opensim, np.eye(4)), (frames.wrench_from_opensim, np.zeros(5)),
-    (frames.wrench_to_opensim, np.zeros(3)), (frames.matrix_from_quaternion, [0, 0, 0, 0]),
-    (frames.matrix_from_quaternion, [0, 0, 1]), (frames.quaternion_from_matrix, np.zeros(3)),
-])
+@pytest.mark.parametrize(
+    ('function', 'value'),
+    [
+        (frames.from_opensim, [1, 2]),
+        (frames.to_opensim, 3.0),
+        (frames.rotation_from_opensim, np.eye(4)),
+        (frames.wrench_from_opensim, np.zeros(5)),
+        (frames.wrench_to_opensim, np.zeros(3)),
+        (frames.matrix_from_quaternion, [0, 0, 0, 0]),
+        (frames.matrix_from_quaternion, [0, 0, 1]),
+        (frames.quaternion_from_matrix, np.zeros(3)),
+    ],
+)
 def test_wrong_shapes_are_refused(function, value):
     with pytest.raises(HumanModelError, match=r'shape|length'):
         function(value)

@@ -16,8 +16,9 @@ from human_model.report import SolveReport
 @pytest.fixture
 def motion(body, rng):
     q = body.standing() + 0.1 * rng.normal(size=(10, 40))
-    return body.body_motion(np.arange(10) / 100, q, 0 * q, 0 * q,
-                            box_position=np.full((10, 3), 0.5))
+    return body.body_motion(
+        np.arange(10) / 100, q, 0 * q, 0 * q, box_position=np.full((10, 3), 0.5)
+    )
 
 
 def fields(motion):
@@ -53,7 +54,8 @@ def test_columns_by_name(motion, body):
     assert motion.point('l5_s1').shape == (10, 3)
     assert motion.frame('thorax').shape == (10, 4)
     assert motion.coordinate('knee_angle_r') == pytest.approx(
-        motion.position[:, body.index('knee_angle_r')])
+        motion.position[:, body.index('knee_angle_r')]
+    )
     with pytest.raises(MotionError, match="no point named 'nose'"):
         motion.point('nose')
 
@@ -72,16 +74,22 @@ def test_arrays_cannot_be_written(motion):
         motion.points[0, 0, 0] = 1.0
 
 
-@pytest.mark.parametrize(('name', 'change', 'words'), [
-    ('points', lambda a: a[:, :-1], r'motion.points: shape \(10, 24, 3\)'),
-    ('time', lambda a: a[::-1], 'motion.time: not increasing'),
-    ('time', lambda a: a * np.nan, 'motion.time: not finite'),
-    ('position', lambda a: np.where(np.arange(10)[:, None] == 3, np.nan, a),
-     'motion.position: not finite in sample 3'),
-    ('frames', lambda a: 2 * a, 'motion.frames.*length 2'),
-    ('skeleton', lambda a: 'stick', 'motion.skeleton'),
-    ('hand_force', lambda a: 'much', 'motion.hand_force: not an array'),
-])
+@pytest.mark.parametrize(
+    ('name', 'change', 'words'),
+    [
+        ('points', lambda a: a[:, :-1], r'motion.points: shape \(10, 24, 3\)'),
+        ('time', lambda a: a[::-1], 'motion.time: not increasing'),
+        ('time', lambda a: a * np.nan, 'motion.time: not finite'),
+        (
+            'position',
+            lambda a: np.where(np.arange(10)[:, None] == 3, np.nan, a),
+            'motion.position: not finite in sample 3',
+        ),
+        ('frames', lambda a: 2 * a, 'motion.frames.*length 2'),
+        ('skeleton', lambda a: 'stick', 'motion.skeleton'),
+        ('hand_force', lambda a: 'much', 'motion.hand_force: not an array'),
+    ],
+)
 def test_bad_arrays_are_named(motion, name, change, words):
     changed = fields(motion)
     changed[name] = change(changed[name])
@@ -108,8 +116,12 @@ def test_lift_cuts_its_window(motion):
     assert np.array_equal(again.motion.position, motion.position)
     with pytest.raises(MotionError, match=r'lift\.lift_id: missing'):
         Lift.from_dict({})
-    for changes, words in (({'source': 'guessed'}, 'lift.source'), ({'end': 0.01}, 'lift.end'),
-                           ({'box_mass': -1.0}, 'lift.box_mass'), ({'lift_id': ''}, 'lift_id')):
+    for changes, words in (
+        ({'source': 'guessed'}, 'lift.source'),
+        ({'end': 0.01}, 'lift.end'),
+        ({'box_mass': -1.0}, 'lift.box_mass'),
+        ({'lift_id': ''}, 'lift_id'),
+    ):
         with pytest.raises(MotionError, match=words):
             Lift(**{**lift.__dict__, **changes})
     with pytest.raises(MotionError, match='no sample'):
@@ -120,7 +132,8 @@ def test_lift_cuts_its_window(motion):
 @pytest.mark.parametrize('name', ['position', 'points', 'frames', 'hand_force'])
 @pytest.mark.parametrize('value', [np.nan, np.inf, -np.inf])
 def test_a_value_that_is_not_finite_is_found_in_one_sample_and_in_many(
-        motion, samples, name, value):
+    motion, samples, name, value
+):
     changed = fields(motion[:samples])
     changed[name] = changed[name].copy()
     changed[name][-1].flat[-1] = value
@@ -134,8 +147,9 @@ def test_values_whose_squares_are_beyond_all_numbers_are_finite(motion):
 
 
 @pytest.mark.parametrize('samples', [1, 10])
-@pytest.mark.parametrize(('length', 'refused'), [(0.9985, True), (0.9995, False),
-                                                 (1.0005, False), (1.0015, True)])
+@pytest.mark.parametrize(
+    ('length', 'refused'), [(0.9985, True), (0.9995, False), (1.0005, False), (1.0015, True)]
+)
 def test_the_quaternion_farthest_from_a_rotation_is_named(motion, samples, length, refused):
     changed = fields(motion[:samples])
     changed['frames'] = changed['frames'].copy()
@@ -155,6 +169,11 @@ def test_what_the_caller_does_to_its_arrays_does_not_change_the_motion(motion):
 
 
 def test_a_motion_without_frames_or_points_is_one(motion):
-    changed = {**fields(motion[:1]), 'frame_names': (), 'frames': np.empty((1, 0, 4)),
-               'point_names': (), 'points': np.empty((1, 0, 3))}
+    changed = {
+        **fields(motion[:1]),
+        'frame_names': (),
+        'frames': np.empty((1, 0, 4)),
+        'point_names': (),
+        'points': np.empty((1, 0, 3)),
+    }
     assert BodyMotion.from_dict(changed).frames.shape == (1, 0, 4)

@@ -18,7 +18,8 @@ from human_model.skeleton_3d import Skeleton3D
 def test_jacobian_by_finite_differences(skeleton, rng):
     q = rng.normal(size=len(skeleton.coordinates))
     position, jacobian = compiled.points_and_jacobian(
-        skeleton.tree, q, skeleton.point_segment, skeleton.point_local)
+        skeleton.tree, q, skeleton.point_segment, skeleton.point_local
+    )
     assert position == pytest.approx(np.array(list(skeleton.points(q).values())))
     h = 1e-6
     for j in range(len(q)):
@@ -31,14 +32,20 @@ def test_jacobian_by_finite_differences(skeleton, rng):
 
 
 def test_bones_keep_their_length(body, rng):
-    spans = [('hip_r', 'knee_r', 'thigh'), ('knee_l', 'ankle_l', 'shank'),
-             ('shoulder_l', 'elbow_l', 'upper_arm'), ('elbow_r', 'wrist_r', 'forearm'),
-             ('wrist_r', 'hand_r', 'hand_grip'), ('c7', 'head', 'head_neck')]
+    spans = [
+        ('hip_r', 'knee_r', 'thigh'),
+        ('knee_l', 'ankle_l', 'shank'),
+        ('shoulder_l', 'elbow_l', 'upper_arm'),
+        ('elbow_r', 'wrist_r', 'forearm'),
+        ('wrist_r', 'hand_r', 'hand_grip'),
+        ('c7', 'head', 'head_neck'),
+    ]
     for q in rng.normal(size=(10, 40)):
         points = body.points(q)
         for start, end, name in spans:
             assert np.linalg.norm(points[end] - points[start]) == pytest.approx(
-                body.parameters.lengths[name])
+                body.parameters.lengths[name]
+            )
 
 
 def test_sagittal_and_full_skeleton_agree_in_the_plane(man):
@@ -56,8 +63,9 @@ def test_sagittal_and_full_skeleton_agree_in_the_plane(man):
     assert flat.centre_of_mass(states[0]) == pytest.approx(full.centre_of_mass(wide[0]))
     tau, wide_tau = flat.inverse_dynamics(*states), full.inverse_dynamics(*wide)
     for i, name in enumerate(flat.coordinates):
-        same = [full.index(name + side) for side in ('', '_r', '_l')
-                if name + side in full.coordinates]
+        same = [
+            full.index(name + side) for side in ('', '_r', '_l') if name + side in full.coordinates
+        ]
         assert tau[i] == pytest.approx(wide_tau[same].sum(), abs=1e-9), name
 
 
@@ -69,13 +77,15 @@ def test_frames_are_those_of_their_segments(skeleton, rng):
         frames = skeleton.forward(q[k])
         for f, s in enumerate(skeleton.frame_segment):
             assert matrix_from_quaternion(quaternions[k, f]) == pytest.approx(
-                frames[s, :3, :3], abs=1e-12)
+                frames[s, :3, :3], abs=1e-12
+            )
 
 
 def test_motion_block(skeleton):
     q = np.array([skeleton.standing()] * 4)
-    motion = skeleton.body_motion([0, 0.01, 0.02, 0.03], q, 0 * q, 0 * q,
-                                  ground_force=np.full((4, 2, 3), 9.0), cop=None)
+    motion = skeleton.body_motion(
+        [0, 0.01, 0.02, 0.03], q, 0 * q, 0 * q, ground_force=np.full((4, 2, 3), 9.0), cop=None
+    )
     assert motion.skeleton == skeleton.name
     assert motion.point_names == POINTS
     assert motion.points == pytest.approx(skeleton.point_array(q))
@@ -91,15 +101,17 @@ def test_limits_hold_the_neutral_posture_and_are_mirrored(skeleton):
     assert np.all(skeleton.limits[:, 1] > skeleton.limits[:, 0])
     for i, name in enumerate(skeleton.coordinates):
         if name.endswith('_r'):
-            assert np.array_equal(skeleton.limits[i],
-                                  skeleton.limits[skeleton.index(name[:-1] + 'l')])
+            assert np.array_equal(
+                skeleton.limits[i], skeleton.limits[skeleton.index(name[:-1] + 'l')]
+            )
 
 
 def test_standing_height(man):
     skeleton = Skeleton3D.of(man)
     lengths = skeleton.parameters.lengths
     assert skeleton.standing_height == pytest.approx(
-        lengths['thigh'] + lengths['shank'] + lengths['ankle_height'])
+        lengths['thigh'] + lengths['shank'] + lengths['ankle_height']
+    )
 
 
 def test_bad_input_is_named(body):

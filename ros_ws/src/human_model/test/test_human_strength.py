@@ -51,10 +51,12 @@ def test_bell():
 def test_gradient_by_finite_differences(q, v):
     h = 1e-6
     by_q, by_v = surface_gradient(COEFFICIENTS, np.array(q), np.array(v))
-    assert by_q == pytest.approx((surface(COEFFICIENTS, q + h, v)
-                                  - surface(COEFFICIENTS, q - h, v)) / (2 * h), abs=1e-8)
-    assert by_v == pytest.approx((surface(COEFFICIENTS, q, v + h)
-                                  - surface(COEFFICIENTS, q, v - h)) / (2 * h), abs=1e-8)
+    assert by_q == pytest.approx(
+        (surface(COEFFICIENTS, q + h, v) - surface(COEFFICIENTS, q - h, v)) / (2 * h), abs=1e-8
+    )
+    assert by_v == pytest.approx(
+        (surface(COEFFICIENTS, q, v + h) - surface(COEFFICIENTS, q, v - h)) / (2 * h), abs=1e-8
+    )
 
 
 @pytest.mark.parametrize('symbol', [ca.SX, ca.MX])
@@ -67,17 +69,26 @@ def test_casadi_gives_the_same_numbers_and_derivatives(symbol):
         values = [float(value) for value in function(angle, speed)]
         assert values[:2] == pytest.approx(strength.limits('knee_angle_r', angle, speed))
         bound = strength.bound('knee_angle_r', 'upper')
-        slope, _ = surface_gradient(bound.coefficients, bound.angle_factor * np.array(angle),
-                                    bound.speed_factor * np.array(speed))
+        slope, _ = surface_gradient(
+            bound.coefficients,
+            bound.angle_factor * np.array(angle),
+            bound.speed_factor * np.array(speed),
+        )
         assert values[2] == pytest.approx(bound.magnitude * bound.angle_factor * float(slope))
 
 
-@pytest.mark.parametrize(('coordinate', 'side', 'published', 'at_degrees'), [
-    # Anderson et al. 2007, men and women of 18-25 years: C1 m g h at C3 (75 kg, 1.75 m)
-    ('hip_flexion_r', 'lower', 0.161, 53.4), ('knee_angle_r', 'lower', 0.163, 64.9),
-    ('knee_angle_r', 'upper', 0.087, 29.9), ('ankle_angle_r', 'lower', 0.095, 23.4),
-    ('ankle_angle_r', 'upper', 0.033, -10.7), ('hip_flexion_r', 'upper', 0.113, -12.3),
-])
+@pytest.mark.parametrize(
+    ('coordinate', 'side', 'published', 'at_degrees'),
+    [
+        # Anderson et al. 2007, men and women of 18-25 years: C1 m g h at C3 (75 kg, 1.75 m)
+        ('hip_flexion_r', 'lower', 0.161, 53.4),
+        ('knee_angle_r', 'lower', 0.163, 64.9),
+        ('knee_angle_r', 'upper', 0.087, 29.9),
+        ('ankle_angle_r', 'lower', 0.095, 23.4),
+        ('ankle_angle_r', 'upper', 0.033, -10.7),
+        ('hip_flexion_r', 'upper', 0.113, -12.3),
+    ],
+)
 def test_legs_have_the_published_peaks(coordinate, side, published, at_degrees):
     """Isometric peak within the fits' error: 10 % in size, 16 degrees in place."""
     torque, angle = isometric_peak(JointStrength('3d_40dof', YOUNG_MAN), coordinate, side)
@@ -86,14 +97,22 @@ def test_legs_have_the_published_peaks(coordinate, side, published, at_degrees):
     assert np.degrees(angle) == pytest.approx(at_degrees, abs=16)
 
 
-@pytest.mark.parametrize(('subject', 'coordinate', 'side', 'published'), [
-    (YOUNG_MAN, 'lumbar_extension', 'upper', 328.5), (YOUNG_MAN, 'lumbar_extension', 'lower', 182),
-    (YOUNG_WOMAN, 'lumbar_extension', 'upper', 197.5),
-    (YOUNG_MAN, 'elbow_flex_l', 'upper', 77), (YOUNG_WOMAN, 'elbow_flex_l', 'upper', 41),
-    (YOUNG_MAN, 'arm_flex_r', 'upper', 78), (YOUNG_MAN, 'arm_flex_r', 'lower', 101),
-    (YOUNG_MAN, 'lumbar_rotation', 'lower', 71.6), (YOUNG_MAN, 'lumbar_bending', 'upper', 159),
-    (YOUNG_WOMAN, 'arm_add_r', 'lower', 37), (YOUNG_MAN, 'wrist_flex_r', 'upper', 12.2),
-])
+@pytest.mark.parametrize(
+    ('subject', 'coordinate', 'side', 'published'),
+    [
+        (YOUNG_MAN, 'lumbar_extension', 'upper', 328.5),
+        (YOUNG_MAN, 'lumbar_extension', 'lower', 182),
+        (YOUNG_WOMAN, 'lumbar_extension', 'upper', 197.5),
+        (YOUNG_MAN, 'elbow_flex_l', 'upper', 77),
+        (YOUNG_WOMAN, 'elbow_flex_l', 'upper', 41),
+        (YOUNG_MAN, 'arm_flex_r', 'upper', 78),
+        (YOUNG_MAN, 'arm_flex_r', 'lower', 101),
+        (YOUNG_MAN, 'lumbar_rotation', 'lower', 71.6),
+        (YOUNG_MAN, 'lumbar_bending', 'upper', 159),
+        (YOUNG_WOMAN, 'arm_add_r', 'lower', 37),
+        (YOUNG_MAN, 'wrist_flex_r', 'upper', 12.2),
+    ],
+)
 def test_trunk_and_arms_have_the_published_peaks(subject, coordinate, side, published):
     """The fitted shapes reach 0.91 to 1.03 of the published isometric peak."""
     torque, _ = isometric_peak(JointStrength('3d_40dof', subject), coordinate, side)
@@ -102,8 +121,13 @@ def test_trunk_and_arms_have_the_published_peaks(subject, coordinate, side, publ
 
 def test_muscles_are_weaker_when_they_shorten():
     strength = JointStrength('3d_40dof', YOUNG_MAN)
-    for coordinate, angle in (('knee_angle_r', 1.0), ('hip_flexion_l', 0.9), ('elbow_flex_r', 1.0),
-                              ('lumbar_extension', -0.5), ('ankle_angle_r', 0.1)):
+    for coordinate, angle in (
+        ('knee_angle_r', 1.0),
+        ('hip_flexion_l', 0.9),
+        ('elbow_flex_r', 1.0),
+        ('lumbar_extension', -0.5),
+        ('ankle_angle_r', 0.1),
+    ):
         for side, direction in (('upper', 1.0), ('lower', -1.0)):
             bound = strength.bound(coordinate, side)
             shortening, still = bound(angle, 2.0 * direction), bound(angle, 0.0)
@@ -123,9 +147,11 @@ def test_the_two_spine_joints_bend_with_the_whole():
     for total in (-0.2, -0.9):
         whole = flat.limits('lumbar_extension', total, 0.5)
         assert full.limits('lumbar_extension', 0.63 * total, 0.63 * 0.5) == pytest.approx(
-            whole, rel=1e-4)
+            whole, rel=1e-4
+        )
         assert full.limits('thorax_extension', 0.37 * total, 0.37 * 0.5) == pytest.approx(
-            whole, rel=1e-4)
+            whole, rel=1e-4
+        )
 
 
 def test_non_negative_set_always_has_strength():
@@ -148,8 +174,10 @@ def test_paired_joints_are_doubled_in_the_sagittal_skeleton():
 
 def test_z_score_scales_by_the_coefficient_of_variation():
     strong = Subject('s', 'male', 75.0, 1.75, 22.0, strength_z=1.05)
-    ratio = (JointStrength('3d_40dof', strong).limits('lumbar_extension', -0.3, 0.0)[1]
-             / JointStrength('3d_40dof', YOUNG_MAN).limits('lumbar_extension', -0.3, 0.0)[1])
+    ratio = (
+        JointStrength('3d_40dof', strong).limits('lumbar_extension', -0.3, 0.0)[1]
+        / JointStrength('3d_40dof', YOUNG_MAN).limits('lumbar_extension', -0.3, 0.0)[1]
+    )
     assert ratio == pytest.approx(1 + 1.05 * 0.16)
 
 
@@ -180,7 +208,8 @@ def test_arrays_of_all_coordinates():
     assert np.all(np.isinf(upper[:, :6])) and np.all(np.isfinite(upper[:, 6:]))
     column = skeleton.index('knee_angle_l')
     assert (lower[2, column], upper[2, column]) == pytest.approx(
-        strength.limits('knee_angle_l', 0.0, 0.0))
+        strength.limits('knee_angle_l', 0.0, 0.0)
+    )
 
 
 def test_bad_input_is_named():

@@ -13,29 +13,33 @@ GOOD = {'pseudonym': 'S1', 'sex': 'female', 'mass': 60.0, 'stature': 1.65, 'age'
 
 
 def test_subject_there_and_back():
-    calibration = Calibration(('a', 'b'), ('pelvis', 'thorax'), np.arange(6.0).reshape(2, 3),
-                              {'thigh': 0.4}, 0.004)
+    calibration = Calibration(
+        ('a', 'b'), ('pelvis', 'thorax'), np.arange(6.0).reshape(2, 3), {'thigh': 0.4}, 0.004
+    )
     subject = Subject(**GOOD, strength_z=0.5, lengths={'shank': 0.41}, calibration=calibration)
     again = Subject.from_dict(subject.to_dict())
     assert again.to_dict() == subject.to_dict()
     assert again.calibration.local_offsets == pytest.approx(calibration.local_offsets)
 
 
-@pytest.mark.parametrize(('field', 'value', 'words'), [
-    ('mass', 29.9, 'subject.mass: 29.9 kg.*30 to 250 kg'),
-    ('mass', 62600.0, '62600 kg'),
-    ('mass', float('nan'), 'subject.mass.*finite'),
-    ('mass', '60', "subject.mass.*'60'"),
-    ('mass', True, 'subject.mass.*True'),
-    ('stature', 165.0, 'subject.stature: 165 m'),
-    ('age', 5, 'subject.age: 5 years'),
-    ('strength_z', 9.0, 'subject.strength_z'),
-    ('sex', 'm', "subject.sex.*'m'"),
-    ('pseudonym', ' ', 'subject.pseudonym'),
-    ('lengths', {'thigh': 41.0}, r'subject.lengths\[thigh\]: 41 m'),
-    ('lengths', 0.4, 'subject.lengths: lengths by name.*0.4'),
-    ('calibration', 'mine', "subject.calibration.*'mine'"),
-])
+@pytest.mark.parametrize(
+    ('field', 'value', 'words'),
+    [
+        ('mass', 29.9, 'subject.mass: 29.9 kg.*30 to 250 kg'),
+        ('mass', 62600.0, '62600 kg'),
+        ('mass', float('nan'), 'subject.mass.*finite'),
+        ('mass', '60', "subject.mass.*'60'"),
+        ('mass', True, 'subject.mass.*True'),
+        ('stature', 165.0, 'subject.stature: 165 m'),
+        ('age', 5, 'subject.age: 5 years'),
+        ('strength_z', 9.0, 'subject.strength_z'),
+        ('sex', 'm', "subject.sex.*'m'"),
+        ('pseudonym', ' ', 'subject.pseudonym'),
+        ('lengths', {'thigh': 41.0}, r'subject.lengths\[thigh\]: 41 m'),
+        ('lengths', 0.4, 'subject.lengths: lengths by name.*0.4'),
+        ('calibration', 'mine', "subject.calibration.*'mine'"),
+    ],
+)
 def test_bad_fields_are_named(field, value, words):
     with pytest.raises(SubjectError, match=words):
         Subject(**{**GOOD, field: value})

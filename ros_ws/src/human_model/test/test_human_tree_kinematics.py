@@ -22,13 +22,15 @@ def test_same_frames_and_points_as_compiled(kind):
     q = np.random.default_rng(4).uniform(-1.5, 1.5, (7, len(skeleton.coordinates)))
     rotation, origin = tree_kinematics.segment_frames(skeleton.tree, q)
     points = tree_kinematics.point_positions(
-        skeleton.tree, q, skeleton.point_segment, skeleton.point_local)
+        skeleton.tree, q, skeleton.point_segment, skeleton.point_local
+    )
     for i, row in enumerate(q):
         turned, place = compiled.segment_frames(skeleton.tree, row)
         np.testing.assert_allclose(rotation[i], turned, atol=1e-13)
         np.testing.assert_allclose(origin[i], place, atol=1e-13)
         expected = compiled.point_positions(
-            skeleton.tree, row, skeleton.point_segment, skeleton.point_local)
+            skeleton.tree, row, skeleton.point_segment, skeleton.point_local
+        )
         np.testing.assert_allclose(points[i], expected, atol=1e-13)
 
 
@@ -42,6 +44,7 @@ def test_sagittal_skeleton_does_not_load_numba():
         'skeleton.body_motion(np.arange(4.0), q, q, q)\n'
         "print('numba' in sys.modules, 'scipy' in sys.modules)\n"
     )
-    done = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True,
-                          timeout=60, check=True)
+    done = subprocess.run(
+        [sys.executable, '-c', code], capture_output=True, text=True, timeout=60, check=True
+    )
     assert done.stdout.split() == ['False', 'False']

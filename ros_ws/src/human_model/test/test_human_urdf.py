@@ -55,8 +55,9 @@ def test_mass_and_centre_of_mass(person, rng):
     theirs = np.empty_like(q)
     theirs[index] = q
     assert pin.computeTotalMass(model) == pytest.approx(skeleton.total_mass, rel=1e-12)
-    np.testing.assert_allclose(pin.centerOfMass(model, model.createData(), theirs),
-                               skeleton.centre_of_mass(q), atol=1e-12)
+    np.testing.assert_allclose(
+        pin.centerOfMass(model, model.createData(), theirs), skeleton.centre_of_mass(q), atol=1e-12
+    )
 
 
 def test_inverse_dynamics(person, rng):
@@ -67,8 +68,9 @@ def test_inverse_dynamics(person, rng):
         theirs = np.empty_like(values)
         theirs[:, index] = values
         expected = pin.rnea(model, model.createData(), *theirs)
-        np.testing.assert_allclose(skeleton.inverse_dynamics(*values), expected[index],
-                                   rtol=1e-10, atol=1e-8)
+        np.testing.assert_allclose(
+            skeleton.inverse_dynamics(*values), expected[index], rtol=1e-10, atol=1e-8
+        )
 
 
 def test_limits_are_the_skeletons(person, man):
@@ -95,8 +97,10 @@ def test_text_is_a_tree_of_named_links(person):
     assert len(links) == len(set(links))
     assert set(body_names(skeleton)) | {WORLD} <= set(links)
     assert set(skeleton.segments) <= set(links)
-    parent = {joint.find('child').get('link'): joint.find('parent').get('link')
-              for joint in root.findall('joint')}
+    parent = {
+        joint.find('child').get('link'): joint.find('parent').get('link')
+        for joint in root.findall('joint')
+    }
     assert set(parent) == set(links) - {WORLD}
     massless = [link.get('name') for link in root.findall('link') if link.find('inertial') is None]
     assert set(massless) == set(links) - set(skeleton.segments)
@@ -106,6 +110,7 @@ def test_shapes_hold_about_the_volume_of_the_body(person):
     """Cylinders whose radii come from the masses hold a litre a kilogramme."""
     skeleton, text, _ = person
     cylinders = ElementTree.fromstring(text).findall('.//cylinder')
-    litres = 1e3 * sum(np.pi * float(c.get('radius'))**2 * float(c.get('length'))
-                       for c in cylinders)
+    litres = 1e3 * sum(
+        np.pi * float(c.get('radius')) ** 2 * float(c.get('length')) for c in cylinders
+    )
     assert litres == pytest.approx(skeleton.total_mass, rel=1e-9)

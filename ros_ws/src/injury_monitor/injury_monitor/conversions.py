@@ -48,8 +48,11 @@ def lift_source(message: Block) -> str:
     if message.source == SpineLoad.LIVE:
         return ''
     if message.source not in _SOURCES:
-        raise InvalidInputError(f'{type(message).__name__}.source', message.source,
-                                'must be LIVE, MEASURED or PREDICTED')
+        raise InvalidInputError(
+            f'{type(message).__name__}.source',
+            message.source,
+            'must be LIVE, MEASURED or PREDICTED',
+        )
     return _SOURCES[message.source]
 
 
@@ -58,8 +61,9 @@ def work_from_msg(subject: Subject, task: Task) -> Work:
     try:
         coupling = Coupling(task.coupling)
     except ValueError as error:
-        raise InvalidInputError('Task.coupling', task.coupling,
-                                'must be good, fair or poor') from error
+        raise InvalidInputError(
+            'Task.coupling', task.coupling, 'must be good, fair or poor'
+        ) from error
     return Work(
         recording=f'{task.task_id}@{to_seconds(task.header.stamp):.3f}',
         subject=subject.pseudonym,
@@ -79,8 +83,11 @@ def block_clock(message: Block) -> tuple[FloatArray, BoolArray]:
     time = np.array([start + seconds for seconds in message.time_from_start.tolist()], np.float64)
     solved = np.array([code == 0 for code in message.status.tolist()], np.bool_)
     if time.size == 0 or solved.shape != time.shape:
-        raise InvalidInputError(f'{type(message).__name__}.status', solved.size,
-                                f'must have one entry for each of the {time.size} samples')
+        raise InvalidInputError(
+            f'{type(message).__name__}.status',
+            solved.size,
+            f'must have one entry for each of the {time.size} samples',
+        )
     return time, solved
 
 
@@ -88,24 +95,28 @@ def rows(message: object, field: str, n: int, width: int) -> FloatArray:
     """Return a row-major field as (n, width)."""
     values = np.asarray(getattr(message, field), np.float64)
     if values.size != n * width:
-        raise InvalidInputError(f'{type(message).__name__}.{field}', values.size,
-                                f'must have {n} x {width} values')
+        raise InvalidInputError(
+            f'{type(message).__name__}.{field}', values.size, f'must have {n} x {width} values'
+        )
     return values.reshape(n, width)
 
 
 def spine_from_msg(message: SpineLoad) -> SpineSeries:
     """Return the L5-S1 load of a block."""
     time, solved = block_clock(message)
-    compression, shear = (rows(message, field, time.size, 1)[:, 0]
-                          for field in ('compression', 'anterior_shear'))
+    compression, shear = (
+        rows(message, field, time.size, 1)[:, 0] for field in ('compression', 'anterior_shear')
+    )
     return SpineSeries(time, compression, shear, solved)
 
 
 def torques_from_msg(message: JointTorques) -> TorqueSeries:
     """Return the joint torques of a block."""
     time, solved = block_clock(message)
-    torque, lower, upper = (rows(message, field, time.size, len(message.joint_names))
-                            for field in ('torque', 'torque_lower', 'torque_upper'))
+    torque, lower, upper = (
+        rows(message, field, time.size, len(message.joint_names))
+        for field in ('torque', 'torque_lower', 'torque_upper')
+    )
     return TorqueSeries(time, tuple(message.joint_names), torque, lower, upper, solved)
 
 
@@ -129,8 +140,11 @@ def ends_from_msg(lift: MeasuredLift) -> LiftEnds:
     start = to_seconds(lift.header.stamp)
     inside = np.flatnonzero((time >= start - 1e-6) & (time <= start + lift.duration + 1e-6))
     if inside.size == 0:
-        raise InvalidInputError('MeasuredLift.duration', lift.duration,
-                                'leaves no sample of the motion inside the lift')
+        raise InvalidInputError(
+            'MeasuredLift.duration',
+            lift.duration,
+            'leaves no sample of the motion inside the lift',
+        )
 
     def end(sample: int) -> LiftEnd:
         hands = points[sample, [names.index('hand_r'), names.index('hand_l')]]
@@ -143,12 +157,23 @@ def ends_from_msg(lift: MeasuredLift) -> LiftEnds:
 def alarm_to_msg(event: AlarmEvent, filter_delay: float) -> AlarmEventMsg:
     """Return the message of an alarm event."""
     message = AlarmEventMsg(
-        occurrence_id=event.occurrence, alarm_id=event.alarm, station=event.station,
-        state=int(event.state), previous_state=int(event.previous_state),
-        severity=event.severity, value=event.value, limit=event.limit, margin=event.margin,
-        unit=event.unit, limit_source=event.limit_source, filter_delay=filter_delay,
-        lift_id=event.lift_id, operator_id=event.operator, historical=event.historical,
-        message=event.message())
+        occurrence_id=event.occurrence,
+        alarm_id=event.alarm,
+        station=event.station,
+        state=int(event.state),
+        previous_state=int(event.previous_state),
+        severity=event.severity,
+        value=event.value,
+        limit=event.limit,
+        margin=event.margin,
+        unit=event.unit,
+        limit_source=event.limit_source,
+        filter_delay=filter_delay,
+        lift_id=event.lift_id,
+        operator_id=event.operator,
+        historical=event.historical,
+        message=event.message(),
+    )
     message.header.stamp = to_stamp(event.stamp)
     for field in ('stamp_raised', 'stamp_returned'):
         stamp = getattr(event, field)
@@ -166,25 +191,35 @@ def assessment_to_msg(result: RiskAssessment, start: float) -> RiskAssessmentMsg
     joints, measured, predicted = _torque_index(result)
     rows_ = result.criteria
     message = RiskAssessmentMsg(
-        lift_id=result.lift_id, subject=work.subject, body_mass=work.body_mass,
-        box_mass=work.box_mass, lifts_per_day=result.limits.loads_per_day,
-        criterion=[row.criterion for row in rows_], source=[row.source for row in rows_],
-        value=_doubles([row.value for row in rows_]), limit=_doubles([row.limit for row in rows_]),
-        margin=_doubles([row.margin for row in rows_]), unit=[row.unit for row in rows_],
+        lift_id=result.lift_id,
+        subject=work.subject,
+        body_mass=work.body_mass,
+        box_mass=work.box_mass,
+        lifts_per_day=result.limits.loads_per_day,
+        criterion=[row.criterion for row in rows_],
+        source=[row.source for row in rows_],
+        value=_doubles([row.value for row in rows_]),
+        limit=_doubles([row.limit for row in rows_]),
+        margin=_doubles([row.margin for row in rows_]),
+        unit=[row.unit for row in rows_],
         limit_source=[row.limit_source for row in rows_],
         time_from_start=_doubles([row.time for row in rows_]),
         unnecessary_compression=result.unnecessary_compression,
         unnecessary_shear=result.unnecessary_shear,
-        torque_index_joints=list(joints), torque_index_measured=_doubles(measured),
+        torque_index_joints=list(joints),
+        torque_index_measured=_doubles(measured),
         torque_index_predicted=_doubles(predicted),
-        activation_index_muscle=muscle, activation_index=activation,
+        activation_index_muscle=muscle,
+        activation_index=activation,
         multipliers=[math.nan] * 6 if equation is None else list(equation.multipliers),
         recommended_weight_limit=lifting.recommended_weight_limit,
         lifting_index=lifting.lifting_index,
         limiting_multiplier='' if equation is None else equation.limiting_multiplier,
-        lifting_index_note=lifting.note, zone=int(result.zone),
+        lifting_index_note=lifting.note,
+        zone=int(result.zone),
         summary=' '.join([result.summary, *(f'({note})' for note in result.notes)]),
-        samples_left_out=result.samples_left_out)
+        samples_left_out=result.samples_left_out,
+    )
     message.header.stamp = to_stamp(start)
     return message
 
@@ -196,8 +231,9 @@ def _doubles(values: Sequence[float] | FloatArray) -> array[float]:
 def _torque_index(result: RiskAssessment) -> tuple[tuple[str, ...], FloatArray, FloatArray]:
     """Return joints and both peaks, NaN where a source lacks a joint."""
     peaks = [result.torque_index.get(source) for source in (MEASURED, PREDICTED)]
-    joints = tuple(dict.fromkeys(
-        joint for entry in peaks if entry is not None for joint in entry.joints))
+    joints = tuple(
+        dict.fromkeys(joint for entry in peaks if entry is not None for joint in entry.joints)
+    )
     columns = []
     for entry in peaks:
         by_joint = {} if entry is None else dict(zip(entry.joints, entry.peak, strict=True))

@@ -58,12 +58,15 @@ class InjuryMonitorNode(PipelineNode):
         self._journal = AlarmJournal(self.values['journal']) if self.values['journal'] else None
         if self._journal is not None and self._journal.damaged_lines:
             self.get_logger().warning(
-                f'{self._journal.path}: lines {self._journal.damaged_lines} cannot be read')
+                f'{self._journal.path}: lines {self._journal.damaged_lines} cannot be read'
+            )
         self.monitor = InjuryMonitor(
-            self.get_namespace().strip('/') or 'station', max_gap=self.values['max_gap'],
+            self.get_namespace().strip('/') or 'station',
+            max_gap=self.values['max_gap'],
             activation_window=self.values['activation_window'],
             max_shelve=self.values['max_shelve'],
-            known=self._journal.known() if self._journal is not None else ())
+            known=self._journal.known() if self._journal is not None else (),
+        )
         self._collector = LiftCollector(self.values['result_wait'])
         self._subject: Subject | None = None
         self._task: Task | None = None
@@ -75,20 +78,36 @@ class InjuryMonitorNode(PipelineNode):
         self.subscribe(Task, 'task', self._on_task, qos.LATCHED)
         # Only for its filter delay, which does not change: dropped after the first message.
         self._delay_input: Subscription | None = self.create_subscription(
-            BodyMotion, 'body_motion', self._on_body_motion, qos.FRAMES)
-        self.subscribe(SpineLoad, 'spine_load', viewed(
-            SpineLoad, self._on_spine_load, conversions.SPINE_FIELDS), qos.FRAMES, raw=True)
-        self.subscribe(JointTorques, 'joint_torques', viewed(
-            JointTorques, self._on_joint_torques, conversions.TORQUE_FIELDS), qos.FRAMES, raw=True)
-        self.subscribe(MuscleAnalysis, 'muscle_analysis', viewed(
-            MuscleAnalysis, self._on_muscle_analysis, conversions.ACTIVATION_FIELDS), qos.FRAMES,
-            raw=True)
+            BodyMotion, 'body_motion', self._on_body_motion, qos.FRAMES
+        )
+        self.subscribe(
+            SpineLoad,
+            'spine_load',
+            viewed(SpineLoad, self._on_spine_load, conversions.SPINE_FIELDS),
+            qos.FRAMES,
+            raw=True,
+        )
+        self.subscribe(
+            JointTorques,
+            'joint_torques',
+            viewed(JointTorques, self._on_joint_torques, conversions.TORQUE_FIELDS),
+            qos.FRAMES,
+            raw=True,
+        )
+        self.subscribe(
+            MuscleAnalysis,
+            'muscle_analysis',
+            viewed(MuscleAnalysis, self._on_muscle_analysis, conversions.ACTIVATION_FIELDS),
+            qos.FRAMES,
+            raw=True,
+        )
         self.subscribe(MeasuredLift, 'measured_lift', self._on_measured_lift, qos.RESULTS)
         self.subscribe(PredictedLift, 'predicted_lift', self._on_predicted_lift, qos.RESULTS)
         self._operator_services = [
             self.create_service(AcknowledgeAlarm, '~/acknowledge_alarm', self._acknowledge),
             self.create_service(ResetAlarm, '~/reset_alarm', self._reset),
-            self.create_service(ShelveAlarm, '~/shelve_alarm', self._shelve)]
+            self.create_service(ShelveAlarm, '~/shelve_alarm', self._shelve),
+        ]
         self._housekeeping = self.create_timer(1.0, self._keep_house)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -114,7 +133,8 @@ class InjuryMonitorNode(PipelineNode):
         self.get_logger().info(
             f'limits: compression {limits.compression_action.value:g} and '
             f'{limits.compression_maximum.value:g} N, anterior shear {limits.shear.value:g} N '
-            f'({limits.loads_per_day:g} loads a day)')
+            f'({limits.loads_per_day:g} loads a day)'
+        )
         while self._early:
             self._early.popleft()()
 
@@ -137,11 +157,17 @@ class InjuryMonitorNode(PipelineNode):
         if source:
             self._collect(message.lift_id, lambda parts: parts.spine.update({source: series}))
         elif self._ready_for_samples(partial(self._on_spine_load, message)):
-            for row in zip(series.time, series.compression, series.anterior_shear, series.solved,
-                           strict=True):
-                self._announce(self.monitor.update_spine_load(
-                    *(float(value) for value in row[:3]), bool(row[3]), message.lift_id,
-                    self.values['stored_data']))
+            for row in zip(
+                series.time, series.compression, series.anterior_shear, series.solved, strict=True
+            ):
+                self._announce(
+                    self.monitor.update_spine_load(
+                        *(float(value) for value in row[:3]),
+                        bool(row[3]),
+                        message.lift_id,
+                        self.values['stored_data'],
+                    )
+                )
 
     def _on_joint_torques(self, message: JointTorques) -> None:
         source = conversions.lift_source(message)
@@ -150,22 +176,38 @@ class InjuryMonitorNode(PipelineNode):
             self._collect(message.lift_id, lambda parts: parts.torques.update({source: series}))
         elif self._ready_for_samples(partial(self._on_joint_torques, message)):
             for k, stamp in enumerate(series.time):
-                self._announce(self.monitor.update_joint_torques(
-                    float(stamp), series.joints, series.torque[k], series.lower[k],
-                    series.upper[k], bool(series.solved[k]), message.lift_id,
-                    self.values['stored_data']))
+                self._announce(
+                    self.monitor.update_joint_torques(
+                        float(stamp),
+                        series.joints,
+                        series.torque[k],
+                        series.lower[k],
+                        series.upper[k],
+                        bool(series.solved[k]),
+                        message.lift_id,
+                        self.values['stored_data'],
+                    )
+                )
 
     def _on_muscle_analysis(self, message: MuscleAnalysis) -> None:
         source = conversions.lift_source(message)
         series = conversions.activations_from_msg(message)
         if source:
-            self._collect(message.lift_id,
-                          lambda parts: parts.activations.update({source: series}))
+            self._collect(
+                message.lift_id, lambda parts: parts.activations.update({source: series})
+            )
         elif self._ready_for_samples(partial(self._on_muscle_analysis, message)):
             for k, stamp in enumerate(series.time):
-                self._announce(self.monitor.update_activations(
-                    float(stamp), series.muscles, series.activation[k], bool(series.solved[k]),
-                    message.lift_id, self.values['stored_data']))
+                self._announce(
+                    self.monitor.update_activations(
+                        float(stamp),
+                        series.muscles,
+                        series.activation[k],
+                        bool(series.solved[k]),
+                        message.lift_id,
+                        self.values['stored_data'],
+                    )
+                )
 
     def _on_measured_lift(self, message: MeasuredLift) -> None:
         ends = conversions.ends_from_msg(message)
@@ -214,8 +256,10 @@ class InjuryMonitorNode(PipelineNode):
     def _assess(self, parts: LiftParts) -> None:
         measured = parts.loads(MEASURED)
         if measured is None:
-            self.report_error(f'{parts.lift_id} not assessed: no measured spine load came within '
-                              f'{self._collector.wait:g} s')
+            self.report_error(
+                f'{parts.lift_id} not assessed: no measured spine load came within '
+                f'{self._collector.wait:g} s'
+            )
             return
         predicted = parts.loads(PREDICTED)
         reason = parts.no_prediction or f'none came within {self._collector.wait:g} s'
@@ -233,26 +277,33 @@ class InjuryMonitorNode(PipelineNode):
             self.get_logger().warning(event.message())
             self._alarms.publish(conversions.alarm_to_msg(event, self.filter_delay))
 
-    def _acknowledge(self, request: AcknowledgeAlarm.Request,
-                     response: AcknowledgeAlarm.Response) -> AcknowledgeAlarm.Response:
+    def _acknowledge(
+        self, request: AcknowledgeAlarm.Request, response: AcknowledgeAlarm.Response
+    ) -> AcknowledgeAlarm.Response:
         return self._command(Trigger.ACKNOWLEDGE, request, response)
 
-    def _reset(self, request: ResetAlarm.Request,
-               response: ResetAlarm.Response) -> ResetAlarm.Response:
+    def _reset(
+        self, request: ResetAlarm.Request, response: ResetAlarm.Response
+    ) -> ResetAlarm.Response:
         return self._command(Trigger.RESET, request, response)
 
-    def _shelve(self, request: ShelveAlarm.Request,
-                response: ShelveAlarm.Response) -> ShelveAlarm.Response:
+    def _shelve(
+        self, request: ShelveAlarm.Request, response: ShelveAlarm.Response
+    ) -> ShelveAlarm.Response:
         return self._command(Trigger.SHELVE, request, response, request.duration)
 
-    def _command(self, trigger: Trigger, request: Any, response: Any,
-                 duration: float = math.nan) -> Any:
-        codes = {UnknownAlarmError: ShelveAlarm.Response.UNKNOWN_ALARM,
-                 AlarmCommandError: ShelveAlarm.Response.NOT_IN_THIS_STATE,
-                 ShelveDurationError: ShelveAlarm.Response.DURATION_REFUSED}
+    def _command(
+        self, trigger: Trigger, request: Any, response: Any, duration: float = math.nan
+    ) -> Any:
+        codes = {
+            UnknownAlarmError: ShelveAlarm.Response.UNKNOWN_ALARM,
+            AlarmCommandError: ShelveAlarm.Response.NOT_IN_THIS_STATE,
+            ShelveDurationError: ShelveAlarm.Response.DURATION_REFUSED,
+        }
         try:
-            events = self.monitor.command(trigger, request.alarm_id, request.operator_id,
-                                          duration=duration)
+            events = self.monitor.command(
+                trigger, request.alarm_id, request.operator_id, duration=duration
+            )
         except tuple(codes) as error:
             response.error_code = codes[type(error)]
             response.error_message = str(error)

@@ -15,15 +15,18 @@ from launch import LaunchDescription
 def generate_launch_description() -> LaunchDescription:
     """Return the launch description."""
     parameters = Path(get_package_share_directory('injury_monitor')) / 'config'
-    return LaunchDescription([
-        DeclareLaunchArgument('station', default_value='station_1',
-                              description='Namespace of the station'),
-        LifecycleNode(
-            package='injury_monitor',
-            executable='injury_monitor_node',
-            name='injury_monitor',
-            namespace=LaunchConfiguration('station'),
-            parameters=[str(parameters / 'injury_monitor.yaml')],
-            output='screen',
-        ),
-    ])
+    return LaunchDescription(
+        [
+            DeclareLaunchArgument(
+                'station', default_value='station_1', description='Namespace of the station'
+            ),
+            LifecycleNode(
+                package='injury_monitor',
+                executable='injury_monitor_node',
+                name='injury_monitor',
+                namespace=LaunchConfiguration('station'),
+                parameters=[str(parameters / 'injury_monitor.yaml')],
+                output='screen',
+            ),
+        ]
+    )

@@ -19,8 +19,13 @@ def test_a_hold_of_the_window_counts_fully_and_a_short_peak_does_not():
     time = np.arange(0.0, 2.001, 0.01)
     hold = ((time >= 0.5) & (time <= 1.0)).astype(float)
     spike = ((time >= 0.5) & (time < 0.545)).astype(float)
-    result = activation_index(time, ('hold', 'spike'), np.column_stack([hold, spike]),
-                              np.ones(len(time), bool), window=0.5)
+    result = activation_index(
+        time,
+        ('hold', 'spike'),
+        np.column_stack([hold, spike]),
+        np.ones(len(time), bool),
+        window=0.5,
+    )
     assert result.index[0] == pytest.approx(1.0)
     assert result.time[0] == pytest.approx(1.0)
     # Five samples of 1 with straight flanks: area 0.05 s of a 0.5 s window.
@@ -98,7 +103,12 @@ def test_the_first_lift_imports_nothing():
         "activation_index(time, ('a',), np.full((100, 1), 0.5), np.ones(100, bool))\n"
         'print(sorted(set(sys.modules) - before))\n'
     )
-    answer = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True,
-                            check=True, timeout=60, env={**os.environ, 'PYTHONPATH':
-                                                         os.pathsep.join(sys.path)})
+    answer = subprocess.run(
+        [sys.executable, '-c', code],
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=60,
+        env={**os.environ, 'PYTHONPATH': os.pathsep.join(sys.path)},
+    )
     assert answer.stdout.strip() == '[]'

@@ -65,9 +65,14 @@ def test_every_state_meets_every_trigger(state, trigger, latching):
         assert next_state(state, trigger, latching) is expected
 
 
-@pytest.mark.parametrize(('state', 'trigger'), [
-    (S.SHELVED, T.UNSHELVE), (S.SUPPRESSED, T.UNSUPPRESS),
-    (S.OUT_OF_SERVICE, T.RETURN_TO_SERVICE)])
+@pytest.mark.parametrize(
+    ('state', 'trigger'),
+    [
+        (S.SHELVED, T.UNSHELVE),
+        (S.SUPPRESSED, T.UNSUPPRESS),
+        (S.OUT_OF_SERVICE, T.RETURN_TO_SERVICE),
+    ],
+)
 def test_the_end_of_silence_tells_what_is_the_case(state, trigger):
     assert next_state(state, trigger, active=True) is S.UNACKNOWLEDGED_ACTIVE
     assert next_state(state, trigger, latching=True, tripped=True) is S.LATCHED_UNACKNOWLEDGED

@@ -25,8 +25,15 @@ WORK = Work('symmetric_12kg', 'P01', 63.5, 12.0, 500.0, 0.2, 1.0, Coupling.GOOD)
 
 
 def loads(compression, shear, **parts):
-    return LiftLoads('lift_001', 10.0, TIME, compression * BUMP, shear * BUMP,
-                     parts.pop('solved', GOOD), **parts)
+    return LiftLoads(
+        'lift_001',
+        10.0,
+        TIME,
+        compression * BUMP,
+        shear * BUMP,
+        parts.pop('solved', GOOD),
+        **parts,
+    )
 
 
 def assess(measured, predicted=None, ends=None, work=WORK):
@@ -37,8 +44,10 @@ def assess(measured, predicted=None, ends=None, work=WORK):
 
 def ends(distance=0.25, low=0.3, high=0.75):
     ankles = np.array([[0.0, -0.1, 0.08], [0.0, 0.1, 0.08]])
-    return LiftEnds(LiftEnd(np.array([distance, 0.0, low]), ankles),
-                    LiftEnd(np.array([distance, 0.0, high]), ankles))
+    return LiftEnds(
+        LiftEnd(np.array([distance, 0.0, low]), ankles),
+        LiftEnd(np.array([distance, 0.0, high]), ankles),
+    )
 
 
 def test_the_numbers_of_the_thesis():
@@ -79,7 +88,8 @@ def test_unsolved_samples_are_left_out_of_peaks_and_counted():
     measured.compression[60] = 1e6
     result = assess(measured)
     assert result.criterion('compression_maximum', 'measured').value == pytest.approx(
-        2390.0, abs=2.0)
+        2390.0, abs=2.0
+    )
     assert result.samples_left_out == 1
 
 
@@ -93,10 +103,17 @@ def test_a_lift_without_any_solved_sample_has_no_zone():
 
 def test_indices_name_joint_and_muscle():
     n = len(TIME)
-    torques = TorqueSeries(TIME, ('hip', 'knee'), np.column_stack([-80.0 * BUMP, 20.0 * BUMP]),
-                           np.full((n, 2), -100.0), np.full((n, 2), 200.0), GOOD)
-    active = ActivationSeries(TIME, ('gluteus', 'vastus'),
-                              np.column_stack([0.4 * np.ones(n), 0.2 * np.ones(n)]), GOOD)
+    torques = TorqueSeries(
+        TIME,
+        ('hip', 'knee'),
+        np.column_stack([-80.0 * BUMP, 20.0 * BUMP]),
+        np.full((n, 2), -100.0),
+        np.full((n, 2), 200.0),
+        GOOD,
+    )
+    active = ActivationSeries(
+        TIME, ('gluteus', 'vastus'), np.column_stack([0.4 * np.ones(n), 0.2 * np.ones(n)]), GOOD
+    )
     result = assess(loads(2390.0, 796.0, torques=torques, activations=active))
     torque = result.criterion('torque_index', 'measured')
     held = result.criterion('activation_index', 'measured')
@@ -109,20 +126,25 @@ def test_lifting_equation_at_both_ends():
     near_floor = assess(loads(2000.0, 500.0), ends=ends()).lifting
     assert near_floor.governing == 'origin'
     assert near_floor.origin.multipliers[1] == pytest.approx(1.0 - 0.003 * 45.0)
-    assert near_floor.lifting_index == pytest.approx(
-        12.0 / (23.0 * 0.865 * (0.82 + 4.5 / 45.0)))
+    assert near_floor.lifting_index == pytest.approx(12.0 / (23.0 * 0.865 * (0.82 + 4.5 / 45.0)))
     far_up = ends(low=0.75, high=1.6)
     assert assess(loads(2000.0, 500.0), ends=far_up).lifting.governing == 'origin'
-    controlled = assess(loads(2000.0, 500.0), ends=far_up,
-                        work=replace(WORK, control_at_destination=True)).lifting
+    controlled = assess(
+        loads(2000.0, 500.0), ends=far_up, work=replace(WORK, control_at_destination=True)
+    ).lifting
     assert controlled.governing == 'destination'
     assert controlled.result() is controlled.destination
     assert controlled.lifting_index > controlled.origin.lifting_index
 
 
-@pytest.mark.parametrize(('change', 'reason'), [
-    ({'box_mass': 0.0}, 'nothing is lifted'), ({'duration_hours': 0.0}, 'duration_hours'),
-    ({'lifts_per_minute': math.nan}, 'lifts_per_minute')])
+@pytest.mark.parametrize(
+    ('change', 'reason'),
+    [
+        ({'box_mass': 0.0}, 'nothing is lifted'),
+        ({'duration_hours': 0.0}, 'duration_hours'),
+        ({'lifts_per_minute': math.nan}, 'lifts_per_minute'),
+    ],
+)
 def test_no_lifting_index_without_its_inputs(change, reason):
     lifting = assess(loads(2000.0, 500.0), ends=ends(), work=replace(WORK, **change)).lifting
     assert reason in lifting.note and math.isnan(lifting.lifting_index)
@@ -146,7 +168,8 @@ def test_bad_series_are_refused_by_field():
     with pytest.raises(InvalidInputError, match=r'LiftLoads\.solved = \(3,\)'):
         replace(loads(1.0, 1.0), solved=GOOD[:3])
     with pytest.raises(InvalidInputError, match=r'TorqueSeries\.lower'):
-        TorqueSeries(TIME, ('hip',), np.zeros((len(TIME), 1)), np.zeros(3),
-                     np.zeros((len(TIME), 1)), GOOD)
+        TorqueSeries(
+            TIME, ('hip',), np.zeros((len(TIME), 1)), np.zeros(3), np.zeros((len(TIME), 1)), GOOD
+        )
     with pytest.raises(InvalidInputError, match=r'predicted\.lift_id'):
         assess(loads(1.0, 1.0), replace(loads(1.0, 1.0), lift_id='lift_002'))

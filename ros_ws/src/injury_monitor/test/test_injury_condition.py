@@ -82,19 +82,26 @@ def test_edges_alternate_and_are_justified(values, on_delay, off_delay):
     target = condition(on_delay, off_delay)
     edges = feed(target, values)
     kinds = [edge.kind for edge in edges]
-    assert kinds == [EdgeKind.RAISE, EdgeKind.CLEAR] * (len(kinds) // 2) + [
-        EdgeKind.RAISE] * (len(kinds) % 2)
+    assert kinds == [EdgeKind.RAISE, EdgeKind.CLEAR] * (len(kinds) // 2) + [EdgeKind.RAISE] * (
+        len(kinds) % 2
+    )
     for edge in edges:
-        stretch = values[round(edge.onset * 100):round(edge.stamp * 100) + 1]
+        stretch = values[round(edge.onset * 100) : round(edge.stamp * 100) + 1]
         delay = on_delay if edge.kind is EdgeKind.RAISE else off_delay
         assert edge.stamp - edge.onset >= delay - 1e-6
-        assert all(value >= 100.0 if edge.kind is EdgeKind.RAISE else value < 98.0
-                   for value in stretch)
+        assert all(
+            value >= 100.0 if edge.kind is EdgeKind.RAISE else value < 98.0 for value in stretch
+        )
 
 
-@pytest.mark.parametrize(('change', 'field'), [
-    ({'on_delay': -0.1}, 'on_delay'), ({'off_delay': math.nan}, 'off_delay'),
-    ({'deadband': 1.0}, 'deadband')])
+@pytest.mark.parametrize(
+    ('change', 'field'),
+    [
+        ({'on_delay': -0.1}, 'on_delay'),
+        ({'off_delay': math.nan}, 'off_delay'),
+        ({'deadband': 1.0}, 'deadband'),
+    ],
+)
 def test_bad_settings_are_refused(change, field):
     with pytest.raises(InvalidInputError, match=field):
         condition(**change)

@@ -31,8 +31,14 @@ from lifting_node.message_view import MessageView
 from lifting_node.stamps import to_seconds, to_stamp
 
 SUBJECT = Subject(pseudonym='P01', mass=63.5)
-TASK = Task(task_id='symmetric_12kg', box_mass=12.0, coupling=Task.COUPLING_FAIR,
-            lifts_per_minute=1.0, lifts_per_day=500.0, duration_hours=2.0)
+TASK = Task(
+    task_id='symmetric_12kg',
+    box_mass=12.0,
+    coupling=Task.COUPLING_FAIR,
+    lifts_per_minute=1.0,
+    lifts_per_day=500.0,
+    duration_hours=2.0,
+)
 
 
 def stamped(message, seconds):
@@ -49,8 +55,10 @@ def measured_lift():
     points[:, 0, 1], points[:, 1, 1] = -0.15, 0.15
     points[:, :2, 2] = 0.3 + 0.6 * np.clip(time, 0.0, 1.0)[:, None]
     points[:, 2:, 1] = (-0.1, 0.1)
-    motion = stamped(BodyMotion(time_from_start=list(time), point_names=names,
-                                points=points.ravel().tolist()), 10.0)
+    motion = stamped(
+        BodyMotion(time_from_start=list(time), point_names=names, points=points.ravel().tolist()),
+        10.0,
+    )
     return stamped(MeasuredLift(lift_id='lift_001', duration=1.0, motion=motion), 10.0)
 
 
@@ -64,9 +72,16 @@ def test_work_has_everything_and_a_recording_name_of_its_own():
 
 
 def test_spine_load_with_status_per_sample():
-    message = stamped(SpineLoad(source=SpineLoad.MEASURED, time_from_start=[0.0, 0.01],
-                                compression=[1.0, 2.0], anterior_shear=[3.0, 4.0],
-                                status=[0, 302]), 7.0)
+    message = stamped(
+        SpineLoad(
+            source=SpineLoad.MEASURED,
+            time_from_start=[0.0, 0.01],
+            compression=[1.0, 2.0],
+            anterior_shear=[3.0, 4.0],
+            status=[0, 302],
+        ),
+        7.0,
+    )
     series = conversions.spine_from_msg(message)
     np.testing.assert_allclose(series.time, [7.0, 7.01])
     np.testing.assert_array_equal(series.solved, [True, False])
@@ -83,27 +98,69 @@ def test_spine_load_with_status_per_sample():
 
 
 def test_row_major_blocks_keep_samples_and_columns_apart():
-    torques = conversions.torques_from_msg(JointTorques(
-        time_from_start=[0.0, 0.1], joint_names=['hip', 'knee'], torque=[1.0, 2.0, 3.0, 4.0],
-        torque_lower=[-1.0] * 4, torque_upper=[9.0] * 4, status=[0, 0]))
+    torques = conversions.torques_from_msg(
+        JointTorques(
+            time_from_start=[0.0, 0.1],
+            joint_names=['hip', 'knee'],
+            torque=[1.0, 2.0, 3.0, 4.0],
+            torque_lower=[-1.0] * 4,
+            torque_upper=[9.0] * 4,
+            status=[0, 0],
+        )
+    )
     np.testing.assert_array_equal(torques.torque, [[1.0, 2.0], [3.0, 4.0]])
-    active = conversions.activations_from_msg(MuscleAnalysis(
-        time_from_start=[0.0], muscle_names=['a', 'b', 'c'], activation=[0.1, 0.2, 0.3],
-        status=[0]))
+    active = conversions.activations_from_msg(
+        MuscleAnalysis(
+            time_from_start=[0.0],
+            muscle_names=['a', 'b', 'c'],
+            activation=[0.1, 0.2, 0.3],
+            status=[0],
+        )
+    )
     np.testing.assert_array_equal(active.activation, [[0.1, 0.2, 0.3]])
 
 
-@pytest.mark.parametrize(('message', 'read', 'fields'), [
-    (SpineLoad(source=SpineLoad.MEASURED, time_from_start=[0.0, 0.1], compression=[1.0, 2.0],
-               anterior_shear=[3.0, 4.0], status=[0, 302]),
-     conversions.spine_from_msg, conversions.SPINE_FIELDS),
-    (JointTorques(source=JointTorques.PREDICTED, time_from_start=[0.0], joint_names=['a', 'b'],
-                  torque=[1.0, 2.0], torque_lower=[-1.0, math.nan], torque_upper=[5.0, math.nan],
-                  status=[0]),
-     conversions.torques_from_msg, conversions.TORQUE_FIELDS),
-    (MuscleAnalysis(source=MuscleAnalysis.LIVE, time_from_start=[0.0], muscle_names=['a', 'b'],
-                    activation=[0.1, 0.2], force=[10.0, 20.0], status=[0]),
-     conversions.activations_from_msg, conversions.ACTIVATION_FIELDS)])
+@pytest.mark.parametrize(
+    ('message', 'read', 'fields'),
+    [
+        (
+            SpineLoad(
+                source=SpineLoad.MEASURED,
+                time_from_start=[0.0, 0.1],
+                compression=[1.0, 2.0],
+                anterior_shear=[3.0, 4.0],
+                status=[0, 302],
+            ),
+            conversions.spine_from_msg,
+            conversions.SPINE_FIELDS,
+        ),
+        (
+            JointTorques(
+                source=JointTorques.PREDICTED,
+                time_from_start=[0.0],
+                joint_names=['a', 'b'],
+                torque=[1.0, 2.0],
+                torque_lower=[-1.0, math.nan],
+                torque_upper=[5.0, math.nan],
+                status=[0],
+            ),
+            conversions.torques_from_msg,
+            conversions.TORQUE_FIELDS,
+        ),
+        (
+            MuscleAnalysis(
+                source=MuscleAnalysis.LIVE,
+                time_from_start=[0.0],
+                muscle_names=['a', 'b'],
+                activation=[0.1, 0.2],
+                force=[10.0, 20.0],
+                status=[0],
+            ),
+            conversions.activations_from_msg,
+            conversions.ACTIVATION_FIELDS,
+        ),
+    ],
+)
 def test_what_the_node_sees_of_a_message_is_what_is_in_it(message, read, fields):
     stamped(message, 1_763_000_000.25).lift_id = 'lift_001'
     kind = type(message)
@@ -143,11 +200,11 @@ def test_alarm_message_carries_value_limit_margin_and_codes_of_the_interface():
     assert message.state == AlarmEvent.UNACKNOWLEDGED_ACTIVE
     assert message.previous_state == AlarmEvent.NORMAL
     assert (message.value, message.limit, message.margin) == (4000.0, 3400.0, -600.0)
-    assert to_seconds(message.header.stamp) == to_seconds(message.stamp_raised) == pytest.approx(
-        5.05)
+    assert (
+        to_seconds(message.header.stamp) == to_seconds(message.stamp_raised) == pytest.approx(5.05)
+    )
     assert to_seconds(message.stamp_returned) == 0.0
-    assert (message.filter_delay, message.lift_id, message.station) == (0.04, 'lift_001',
-                                                                        'cell_1')
+    assert (message.filter_delay, message.lift_id, message.station) == (0.04, 'lift_001', 'cell_1')
     assert 'P01' not in repr(message)
 
 
@@ -172,8 +229,7 @@ def test_assessment_message_stands_alone():
     np.testing.assert_allclose(np.array(message.limit) - np.array(message.value), message.margin)
     assert message.unnecessary_compression == pytest.approx(1200.0)
     assert (message.zone, message.subject) == (message.ZONE_ACTION, 'P01')
-    assert message.lifting_index == pytest.approx(
-        12.0 / (23.0 * np.prod(message.multipliers)))
+    assert message.lifting_index == pytest.approx(12.0 / (23.0 * np.prod(message.multipliers)))
     assert message.recommended_weight_limit * message.lifting_index == pytest.approx(12.0)
     assert message.limiting_multiplier == 'HM'
     assert math.isnan(message.activation_index) and message.torque_index_joints == []

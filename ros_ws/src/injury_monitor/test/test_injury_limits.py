@@ -23,9 +23,16 @@ def test_published_values_and_sources():
     assert all(limit.source for limit in read_limits().values())
 
 
-@pytest.mark.parametrize(('loads', 'value', 'within'), [
-    (0.0, 1000.0, True), (100.0, 1000.0, True), (100.5, 700.0, True), (1000.0, 700.0, True),
-    (1001.0, 700.0, False)])
+@pytest.mark.parametrize(
+    ('loads', 'value', 'within'),
+    [
+        (0.0, 1000.0, True),
+        (100.0, 1000.0, True),
+        (100.5, 700.0, True),
+        (1000.0, 700.0, True),
+        (1001.0, 700.0, False),
+    ],
+)
 def test_shear_limit_follows_loads_a_day(loads, value, within):
     limits = limits_for(loads)
     assert limits.shear.value == value
@@ -41,9 +48,13 @@ def test_bad_loads_are_refused(loads):
 @given(st.floats(min_value=-1e4, max_value=1e5))
 def test_zone_agrees_with_the_margins(compression):
     limits = limits_for(50.0)
-    expected = (Zone.HAZARDOUS if limits.compression_maximum.margin(compression) <= 0.0 else
-                Zone.ACTION if limits.compression_action.margin(compression) <= 0.0 else
-                Zone.NOMINAL)
+    expected = (
+        Zone.HAZARDOUS
+        if limits.compression_maximum.margin(compression) <= 0.0
+        else Zone.ACTION
+        if limits.compression_action.margin(compression) <= 0.0
+        else Zone.NOMINAL
+    )
     assert limits.zone(compression) is expected
 
 
@@ -57,9 +68,16 @@ def test_unknown_limit_name_is_refused():
         limits_for(50.0).by_name('no_such_limit')
 
 
-@pytest.mark.parametrize(('text', 'match'), [
-    ('a,b\n1,2\n', 'columns missing'), ('a,source\n', 'empty'), ('a,source\n1,\n', 'source'),
-    ('a,source\n1,x,y\n', 'number of columns'), ('a,source\n1\n', 'number of columns')])
+@pytest.mark.parametrize(
+    ('text', 'match'),
+    [
+        ('a,b\n1,2\n', 'columns missing'),
+        ('a,source\n', 'empty'),
+        ('a,source\n1,\n', 'source'),
+        ('a,source\n1,x,y\n', 'number of columns'),
+        ('a,source\n1\n', 'number of columns'),
+    ],
+)
 def test_damaged_tables_are_refused_by_name(text, match):
     with pytest.raises(DataFileError, match=match) as caught:
         parse_table('damaged.csv', text, ['a'])

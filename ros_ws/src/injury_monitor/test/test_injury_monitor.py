@@ -44,8 +44,12 @@ def feed(target, stamps, compression, shear=None, solved=None, lift_id='lift_001
     events = []
     for k, stamp in enumerate(stamps):
         events += target.update_spine_load(
-            float(stamp), float(compression[k]), 0.0 if shear is None else float(shear[k]),
-            True if solved is None else bool(solved[k]), lift_id)
+            float(stamp),
+            float(compression[k]),
+            0.0 if shear is None else float(shear[k]),
+            True if solved is None else bool(solved[k]),
+            lift_id,
+        )
     return events
 
 
@@ -104,14 +108,17 @@ def test_beyond_the_maximum_permissible_limit_it_latches():
     target = monitor()
     events = feed(target, *lift(7000.0))
     assert [event.state for event in of(events, HIGH_HIGH)] == [
-        AlarmState.UNACKNOWLEDGED_ACTIVE, AlarmState.LATCHED_UNACKNOWLEDGED]
+        AlarmState.UNACKNOWLEDGED_ACTIVE,
+        AlarmState.LATCHED_UNACKNOWLEDGED,
+    ]
     with pytest.raises(AlarmCommandError):
         target.command(Trigger.RESET, HIGH_HIGH, 'panel 1')
-    acknowledged, = target.command(Trigger.ACKNOWLEDGE, HIGH_HIGH, 'panel 1')
+    (acknowledged,) = target.command(Trigger.ACKNOWLEDGE, HIGH_HIGH, 'panel 1')
     assert acknowledged.state is AlarmState.LATCHED_ACKNOWLEDGED
     assert acknowledged.operator == 'panel 1' and acknowledged.stamp_acknowledged == pytest.approx(
-        4.99)
-    reset, = target.command(Trigger.RESET, HIGH_HIGH, 'panel 1')
+        4.99
+    )
+    (reset,) = target.command(Trigger.RESET, HIGH_HIGH, 'panel 1')
     assert reset.state is AlarmState.NORMAL
     assert len({event.occurrence for event in [*of(events, HIGH_HIGH), acknowledged, reset]}) == 1
 
@@ -189,7 +196,7 @@ def test_a_recording_cut_during_an_alarm_clears_on_the_next_play():
     stamps, load = lift(4500.0)
     cut = int(np.argmax(load))
     target = monitor()
-    raised, = of(feed(target, stamps[:cut], load[:cut]), HIGH)
+    (raised,) = of(feed(target, stamps[:cut], load[:cut]), HIGH)
     second = of(feed(target, stamps[:cut], load[:cut]), HIGH)
     assert [event.trigger for event in second] == [Trigger.CLEAR]
     assert second[0].occurrence == raised.occurrence
@@ -226,7 +233,7 @@ def test_a_late_or_doubled_sample_is_left_out_and_counted():
 def test_shelving_is_silent_ends_by_the_data_clock_and_tells_what_is_the_case():
     target = monitor()
     target.update_spine_load(0.0, 600.0, 0.0, True)
-    shelved, = target.command(Trigger.SHELVE, HIGH, 'panel 1', 'known test', 3.0)
+    (shelved,) = target.command(Trigger.SHELVE, HIGH, 'panel 1', 'known test', 3.0)
     assert shelved.state is AlarmState.SHELVED and shelved.reason == 'known test'
     load = np.full(500, 5000.0)
     events = of(feed(target, 0.01 + np.arange(500) / RATE, load), HIGH)
@@ -240,7 +247,7 @@ def test_a_latching_alarm_is_not_lost_while_suppressed():
     target.update_spine_load(-1.0, 600.0, 0.0, True)
     target.command(Trigger.SUPPRESS, HIGH_HIGH, 'panel 1', 'commissioning')
     assert of(feed(target, *lift(7000.0)), HIGH_HIGH) == []
-    back, = target.command(Trigger.UNSUPPRESS, HIGH_HIGH, 'panel 1')
+    (back,) = target.command(Trigger.UNSUPPRESS, HIGH_HIGH, 'panel 1')
     assert back.state is AlarmState.LATCHED_UNACKNOWLEDGED
 
 
@@ -263,9 +270,10 @@ def test_torque_index_alarm_names_the_joint():
     target = monitor()
     events = []
     for k in range(20):
-        events += target.update_joint_torques(k / RATE, ('hip', 'knee'), [10.0, -90.0],
-                                              [-50.0, -80.0], [50.0, 80.0], True)
-    raised, = events
+        events += target.update_joint_torques(
+            k / RATE, ('hip', 'knee'), [10.0, -90.0], [-50.0, -80.0], [50.0, 80.0], True
+        )
+    (raised,) = events
     assert (raised.alarm, raised.detail) == ('joint_torque_index_high', 'knee')
     assert raised.value == pytest.approx(90.0 / 80.0)
     assert raised.margin == pytest.approx(-0.125)
@@ -275,12 +283,25 @@ def test_a_joint_without_published_strength_raises_nothing():
     target = monitor()
     unknown = [math.nan, math.nan]
     for k in range(20):
-        assert target.update_joint_torques(k / RATE, ('wrist', 'neck'), [500.0, 500.0], unknown,
-                                           unknown, True) == []
+        assert (
+            target.update_joint_torques(
+                k / RATE, ('wrist', 'neck'), [500.0, 500.0], unknown, unknown, True
+            )
+            == []
+        )
     assert target.counts['joint_torques'].unsolved == 20
     for k in range(20, 40):
-        assert target.update_joint_torques(k / RATE, ('wrist', 'hip'), [500.0, 10.0],
-                                           [math.nan, -20.0], [math.nan, 20.0], True) == []
+        assert (
+            target.update_joint_torques(
+                k / RATE,
+                ('wrist', 'hip'),
+                [500.0, 10.0],
+                [math.nan, -20.0],
+                [math.nan, 20.0],
+                True,
+            )
+            == []
+        )
     assert target.counts['joint_torques'].used == 20
 
 
@@ -290,7 +311,7 @@ def test_activation_alarm_needs_a_hold():
     for k in range(100):
         held = 1.0 if k >= 20 else 0.1
         events += target.update_activations(k / RATE, ('multifidus', 'rectus'), [held, 0.2], True)
-    raised, = events
+    (raised,) = events
     assert raised.detail == 'multifidus' and raised.value >= 0.95
     assert raised.stamp == pytest.approx(0.2 + 0.5, abs=0.06)
 
@@ -311,7 +332,7 @@ def test_limits_may_change_while_an_alarm_is_active():
     assert target.states()[SHEAR] is AlarmState.UNACKNOWLEDGED_ACTIVE
     target.configure(WORK)
     assert target.states()[SHEAR] is AlarmState.UNACKNOWLEDGED_ACTIVE
-    cleared, = feed(target, stamps + 1.0, np.zeros(100), np.full(100, 850.0))
+    (cleared,) = feed(target, stamps + 1.0, np.zeros(100), np.full(100, 850.0))
     assert cleared.trigger is Trigger.CLEAR and cleared.limit == 1000.0
 
 
@@ -322,7 +343,11 @@ def test_bad_input_is_refused():
         monitor().update_spine_load(math.nan, 0.0, 0.0, True)
     with pytest.raises(InvalidInputError, match='torque'):
         monitor().update_joint_torques(0.0, ('hip',), [1.0, 2.0], [0.0], [0.0], True)
-    for field, value in (('subject', ''), ('body_mass', 0.0), ('box_mass', -1.0),
-                         ('lifts_per_day', math.nan)):
+    for field, value in (
+        ('subject', ''),
+        ('body_mass', 0.0),
+        ('box_mass', -1.0),
+        ('lifts_per_day', math.nan),
+    ):
         with pytest.raises(InvalidInputError, match=field):
             replace(WORK, **{field: value})

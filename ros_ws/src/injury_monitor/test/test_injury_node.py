@@ -53,16 +53,23 @@ class Station:
         self.executor.add_node(self.client)
         self.alarms, self.assessments = [], []
         self.client.create_subscription(AlarmEvent, 'alarms', self.alarms.append, qos.RESULTS)
-        self.client.create_subscription(RiskAssessment, 'risk_assessment',
-                                        self.assessments.append, qos.RESULTS)
-        topics = {'subject': (Subject, qos.LATCHED), 'task': (Task, qos.LATCHED),
-                  'body_motion': (BodyMotion, qos.FRAMES), 'spine_load': (SpineLoad, qos.FRAMES),
-                  'joint_torques': (JointTorques, qos.FRAMES),
-                  'muscle_analysis': (MuscleAnalysis, qos.FRAMES),
-                  'measured_lift': (MeasuredLift, qos.RESULTS),
-                  'predicted_lift': (PredictedLift, qos.RESULTS)}
-        self.publishers = {topic: self.client.create_publisher(kind, topic, profile)
-                           for topic, (kind, profile) in topics.items()}
+        self.client.create_subscription(
+            RiskAssessment, 'risk_assessment', self.assessments.append, qos.RESULTS
+        )
+        topics = {
+            'subject': (Subject, qos.LATCHED),
+            'task': (Task, qos.LATCHED),
+            'body_motion': (BodyMotion, qos.FRAMES),
+            'spine_load': (SpineLoad, qos.FRAMES),
+            'joint_torques': (JointTorques, qos.FRAMES),
+            'muscle_analysis': (MuscleAnalysis, qos.FRAMES),
+            'measured_lift': (MeasuredLift, qos.RESULTS),
+            'predicted_lift': (PredictedLift, qos.RESULTS),
+        }
+        self.publishers = {
+            topic: self.client.create_publisher(kind, topic, profile)
+            for topic, (kind, profile) in topics.items()
+        }
 
     def until(self, condition, what):
         """Spin until a condition holds; fail by name when patience is over."""
@@ -89,8 +96,17 @@ class Station:
         assert self.transition(Transition.TRANSITION_CONFIGURE)
         assert self.transition(Transition.TRANSITION_ACTIVATE)
         self.send('subject', Subject(pseudonym='P01', mass=70.0))
-        self.send('task', Task(task_id='bag', box_mass=12.0, coupling=Task.COUPLING_GOOD,
-                               lifts_per_day=50.0, lifts_per_minute=1.0, duration_hours=1.0))
+        self.send(
+            'task',
+            Task(
+                task_id='bag',
+                box_mass=12.0,
+                coupling=Task.COUPLING_GOOD,
+                lifts_per_day=50.0,
+                lifts_per_minute=1.0,
+                duration_hours=1.0,
+            ),
+        )
         self.until(lambda: self.node.monitor.work is not None, 'configuration')
 
     def send(self, topic, message):
@@ -102,11 +118,15 @@ class Station:
     def live(self, start, compression, status=0):
         """Send live samples at 100 Hz, ten a message."""
         for first in range(0, len(compression), 10):
-            part = list(compression[first:first + 10])
+            part = list(compression[first : first + 10])
             message = SpineLoad(
-                source=SpineLoad.LIVE, lift_id='lift_001', compression=part,
-                anterior_shear=[0.0] * len(part), status=[status] * len(part),
-                time_from_start=[k / 100.0 for k in range(len(part))])
+                source=SpineLoad.LIVE,
+                lift_id='lift_001',
+                compression=part,
+                anterior_shear=[0.0] * len(part),
+                status=[status] * len(part),
+                time_from_start=[k / 100.0 for k in range(len(part))],
+            )
             message.header.stamp = to_stamp(start + first / 100.0)
             self.send('spine_load', message)
 
@@ -128,27 +148,53 @@ def station(request, monkeypatch):
 
 def block(kind, source, **fields):
     time_from_start = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0]
-    message = kind(source=source, lift_id='lift_001', time_from_start=time_from_start,
-                   status=[0] * 6, **fields)
+    message = kind(
+        source=source,
+        lift_id='lift_001',
+        time_from_start=time_from_start,
+        status=[0] * 6,
+        **fields,
+    )
     message.header.stamp = to_stamp(10.0)
     return message
 
 
 def send_analysis(station, source, compression):
-    station.send('spine_load', block(SpineLoad, source, compression=[compression, *[0.0] * 5],
-                                     anterior_shear=[300.0] * 6))
-    station.send('joint_torques', block(JointTorques, source, joint_names=['hip'],
-                                        torque=[10.0, 50.0, *[10.0] * 4],
-                                        torque_lower=[-100.0] * 6, torque_upper=[100.0] * 6))
-    station.send('muscle_analysis', block(MuscleAnalysis, source, muscle_names=['MF_m1s_r'],
-                                          activation=[0.2] * 6))
+    station.send(
+        'spine_load',
+        block(
+            SpineLoad, source, compression=[compression, *[0.0] * 5], anterior_shear=[300.0] * 6
+        ),
+    )
+    station.send(
+        'joint_torques',
+        block(
+            JointTorques,
+            source,
+            joint_names=['hip'],
+            torque=[10.0, 50.0, *[10.0] * 4],
+            torque_lower=[-100.0] * 6,
+            torque_upper=[100.0] * 6,
+        ),
+    )
+    station.send(
+        'muscle_analysis',
+        block(MuscleAnalysis, source, muscle_names=['MF_m1s_r'], activation=[0.2] * 6),
+    )
 
 
 def send_measured_lift(station):
-    points = np.array([[[0.4, -0.1, h], [0.4, 0.1, h], [0.0, -0.1, 0.1], [0.0, 0.1, 0.1]]
-                       for h in (0.3, 0.6, 0.9)])
-    motion = BodyMotion(time_from_start=[0.0, 0.5, 1.0], points=points.ravel().tolist(),
-                        point_names=['hand_r', 'hand_l', 'ankle_r', 'ankle_l'])
+    points = np.array(
+        [
+            [[0.4, -0.1, h], [0.4, 0.1, h], [0.0, -0.1, 0.1], [0.0, 0.1, 0.1]]
+            for h in (0.3, 0.6, 0.9)
+        ]
+    )
+    motion = BodyMotion(
+        time_from_start=[0.0, 0.5, 1.0],
+        points=points.ravel().tolist(),
+        point_names=['hand_r', 'hand_l', 'ankle_r', 'ankle_l'],
+    )
     motion.header.stamp = to_stamp(10.0)
     lift = MeasuredLift(lift_id='lift_001', duration=1.0, motion=motion)
     lift.header.stamp = to_stamp(10.0)
@@ -177,11 +223,17 @@ def test_alarm_is_raised_acknowledged_and_reset(station, monkeypatch):
     assert station.call(ResetAlarm, 'reset_alarm', ResetAlarm.Request(**request)).error_code == 0
     station.until(lambda: len(station.alarms) == 6, 'acknowledged and reset')
     assert station.alarms[-1].state == AlarmEvent.NORMAL
-    unknown = station.call(ShelveAlarm, 'shelve_alarm', ShelveAlarm.Request(
-        alarm_id='none', operator_id='panel 1', duration=5.0))
+    unknown = station.call(
+        ShelveAlarm,
+        'shelve_alarm',
+        ShelveAlarm.Request(alarm_id='none', operator_id='panel 1', duration=5.0),
+    )
     assert unknown.error_code == ShelveAlarm.Response.UNKNOWN_ALARM
-    long = station.call(ShelveAlarm, 'shelve_alarm', ShelveAlarm.Request(
-        alarm_id=HIGH, operator_id='panel 1', duration=1e9))
+    long = station.call(
+        ShelveAlarm,
+        'shelve_alarm',
+        ShelveAlarm.Request(alarm_id=HIGH, operator_id='panel 1', duration=1e9),
+    )
     assert long.error_code == ShelveAlarm.Response.DURATION_REFUSED
 
 
@@ -208,8 +260,10 @@ def test_failed_prediction_is_not_waited_for(station):
     station.bring_up()
     send_measured_lift(station)
     send_analysis(station, SpineLoad.MEASURED, 3000.0)
-    failed = PredictedLift(lift_id='lift_001', report=SolveReport(
-        status=SolveReport.PREDICTOR_INFEASIBLE, message='box too heavy'))
+    failed = PredictedLift(
+        lift_id='lift_001',
+        report=SolveReport(status=SolveReport.PREDICTOR_INFEASIBLE, message='box too heavy'),
+    )
     station.send('predicted_lift', failed)
     station.until(lambda: station.assessments, 'assessment')
     assert np.isnan(station.assessments[0].unnecessary_compression)
@@ -227,8 +281,16 @@ def test_silent_predictor_is_waited_for_only_so_long(station):
 
 def test_bad_messages_are_counted_and_the_node_goes_on(station):
     station.bring_up()
-    station.send('spine_load', SpineLoad(source=SpineLoad.LIVE, time_from_start=[0.0],
-                                         compression=[], anterior_shear=[0.0], status=[0]))
+    station.send(
+        'spine_load',
+        SpineLoad(
+            source=SpineLoad.LIVE,
+            time_from_start=[0.0],
+            compression=[],
+            anterior_shear=[0.0],
+            status=[0],
+        ),
+    )
     station.until(lambda: station.node.counts['errors'] == 1, 'first error')
     assert 'SpineLoad.compression' in station.node.last_error
     station.send('task', Task(task_id='bad', coupling=Task.COUPLING_GOOD, box_mass=-1.0))

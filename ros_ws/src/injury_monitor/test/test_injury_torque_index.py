@@ -8,16 +8,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from injury_monitor.core.exceptions import InvalidInputError
-from injury_monitor.core.torque_index import (
-    torque_index,
-    torque_index_peaks,
-    worst_torque_index,
-)
+from injury_monitor.core.torque_index import torque_index, torque_index_peaks, worst_torque_index
 
 
 def test_the_bound_on_the_side_of_the_torque_is_used():
-    index = torque_index(np.array([50.0, -50.0, 0.0]), np.array([-200.0, -80.0, -1.0]),
-                         np.array([100.0, 500.0, 1.0]))
+    index = torque_index(
+        np.array([50.0, -50.0, 0.0]),
+        np.array([-200.0, -80.0, -1.0]),
+        np.array([100.0, 500.0, 1.0]),
+    )
     np.testing.assert_allclose(index, [0.5, 0.625, 0.0])
 
 
@@ -50,9 +49,15 @@ def test_the_worst_joint_of_a_sample_is_that_of_all_its_indices(joints):
         assert worst == (np.nanargmax(index), np.nanmax(index))
 
 
-@pytest.mark.parametrize(('torque', 'lower', 'upper', 'field'), [
-    ([1.0], [1.0], [2.0], 'lower'), ([1.0], [-1.0], [-2.0], 'upper'),
-    ([np.nan], [-1.0], [1.0], 'torque'), ([1.0], [-1.0, -1.0], [1.0], 'lower')])
+@pytest.mark.parametrize(
+    ('torque', 'lower', 'upper', 'field'),
+    [
+        ([1.0], [1.0], [2.0], 'lower'),
+        ([1.0], [-1.0], [-2.0], 'upper'),
+        ([np.nan], [-1.0], [1.0], 'torque'),
+        ([1.0], [-1.0, -1.0], [1.0], 'lower'),
+    ],
+)
 def test_bad_bounds_are_refused(torque, lower, upper, field):
     with pytest.raises(InvalidInputError, match=field):
         torque_index(np.array(torque), np.array(lower), np.array(upper))
@@ -65,8 +70,9 @@ def test_peaks_leave_out_unsolved_samples():
     time = np.array([10.0, 10.1, 10.2])
     torque = np.array([[10.0, -5.0], [np.nan, 1e9], [20.0, -1.0]])
     lower, upper = np.full((3, 2), -10.0), np.full((3, 2), 40.0)
-    peaks = torque_index_peaks(time, ('hip', 'knee'), torque, lower, upper,
-                               np.array([True, False, True]))
+    peaks = torque_index_peaks(
+        time, ('hip', 'knee'), torque, lower, upper, np.array([True, False, True])
+    )
     np.testing.assert_allclose(peaks.peak, [0.5, 0.5])
     np.testing.assert_allclose(peaks.time, [10.2, 10.0])
     nothing = torque_index_peaks(time, ('hip', 'knee'), torque, lower, upper, np.zeros(3, bool))

@@ -61,9 +61,7 @@ class PlanAction:
         Tells whether goals are accepted now.
     """
 
-    def __init__(
-        self, node: Node, background: Background, ready: Callable[[], bool]
-    ) -> None:
+    def __init__(self, node: Node, background: Background, ready: Callable[[], bool]) -> None:
         self._background = background
         self._ready = ready
         self._logger = node.get_logger()
@@ -97,9 +95,7 @@ class PlanAction:
             result.error_message = str(error)
             return result
         try:
-            planned = await self._background.run(
-                handle, lambda: self._plan(handle, subject, task)
-            )
+            planned = await self._background.run(handle, lambda: self._plan(handle, subject, task))
         except CancelledError as error:
             result.error_code = PlanLift.Result.CANCELLED
             result.error_message = str(error)

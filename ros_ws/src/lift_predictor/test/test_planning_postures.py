@@ -15,11 +15,7 @@ from lift_predictor.core.exceptions import PlanError, UnreachableError
 from lift_predictor.core.least_squares import minimise
 from lift_predictor.core.planning.build import build_plan, plan_parameters
 from lift_predictor.core.planning.plan_task import DEFAULT_DURATION, PlanTask
-from lift_predictor.core.planning.technique import (
-    stoop_squat_index,
-    technique,
-    techniques,
-)
+from lift_predictor.core.planning.technique import stoop_squat_index, technique, techniques
 from lift_predictor.core.sagittal.kinematics import chain_positions
 
 TASK = PlanTask(

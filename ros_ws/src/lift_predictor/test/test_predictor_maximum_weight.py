@@ -79,9 +79,7 @@ def test_hands_carry_the_predicted_weight(solve) -> None:
     np.testing.assert_allclose(impulse, [0.0, 0.0, -result.weight * duration], atol=0.1)
 
 
-def test_a_little_less_can_be_lifted_and_a_little_more_cannot(
-    solve, predictor, open_task
-) -> None:
+def test_a_little_less_can_be_lifted_and_a_little_more_cannot(solve, predictor, open_task) -> None:
     task, starts = open_task
     # Before margins between the nodes were asked for: the bounds of these solves have none.
     heaviest = solve(0.0).prediction.optima[-len(starts)]

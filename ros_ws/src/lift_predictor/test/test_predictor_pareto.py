@@ -101,15 +101,11 @@ def test_total_error_is_equation_2_24() -> None:
     error = total_error(curve, 200.0)
     np.testing.assert_allclose(error.angle, [60.0, 30.0])
     np.testing.assert_allclose(error.weight, [30.0, 10.0])
-    np.testing.assert_allclose(
-        error.total, [1.0 + 0.5 + 1.0 + 1.0, 0.5 + 1.0 + 0.25 + 1.0 / 3.0]
-    )
+    np.testing.assert_allclose(error.total, [1.0 + 0.5 + 1.0 + 1.0, 0.5 + 1.0 + 0.25 + 1.0 / 3.0])
 
 
 def test_failed_cases_take_no_part() -> None:
-    curve = ParetoCurve(
-        (stand_in(6.0, 1.0, 1.0, 2.0), stand_in(600.0, 9.0, 9.0, 9.0, ok=False))
-    )
+    curve = ParetoCurve((stand_in(6.0, 1.0, 1.0, 2.0), stand_in(600.0, 9.0, 9.0, 9.0, ok=False)))
     error = total_error(curve, 1.0)
     assert error.total[0] == pytest.approx(4.0)
     assert np.isnan(error.total[1])

@@ -36,10 +36,7 @@ def test_starts_are_the_same_motion_on_another_spline() -> None:
 
 @pytest.mark.parametrize(
     ('rows', 'words'),
-    [
-        ('1,1,0,0,0,0,0,nothing,x\n', 'line 2'),
-        ('1,1,0,0,0,0,0,0,x\n', 'lift 1 has 1 points'),
-    ],
+    [('1,1,0,0,0,0,0,nothing,x\n', 'line 2'), ('1,1,0,0,0,0,0,0,x\n', 'lift 1 has 1 points')],
 )
 def test_bad_file_is_named(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, rows: str, words: str

@@ -13,12 +13,7 @@ from human_model.motion import Lift
 from lift_predictor.core.exceptions import AsymmetricLiftError, TaskError, UnreachableError
 from lift_predictor.core.sagittal.kinematics import chain_positions, reach
 from lift_predictor.core.sagittal.parameters import JOINTS
-from lift_predictor.core.sagittal.task import (
-    PLACE_ALLOWANCE,
-    POSTURE_TOLERANCE,
-    Box,
-    build_task,
-)
+from lift_predictor.core.sagittal.task import PLACE_ALLOWANCE, POSTURE_TOLERANCE, Box, build_task
 
 BOX = Box(mass=7.0, depth=0.238)
 

@@ -70,9 +70,7 @@ def test_nothing_heavier_can_be_lifted_from_there(
     assert heaviest.weight == pytest.approx(heaviest.mass * task.parameters.gravity)
     assert 100.0 < heaviest.weight < LARGEST_WEIGHT
     # The margins for the time between the nodes cost up to a few percent of the mass.
-    best = max(
-        float(run.solution.x[-2]) for run in heaviest.prediction.optima if run.converged
-    )
+    best = max(float(run.solution.x[-2]) for run in heaviest.prediction.optima if run.converged)
     start = as_start(heaviest.prediction.optima[0], spatial.grid)
     for factor, possible in ((0.99, True), (1.05, False)):
         mass = np.full(2, (heaviest.mass if possible else best) * factor)

@@ -142,9 +142,7 @@ def test_torques_and_limits_are_those_of_the_skeleton(who) -> None:
     np.testing.assert_allclose(loads.lower, low[:, columns], atol=1e-9)
     np.testing.assert_allclose(loads.upper, high[:, columns], atol=1e-9)
     for i in range(6):
-        torque = skeleton.inverse_dynamics(
-            *(part[i] for part in full), external_forces(loads, i)
-        )
+        torque = skeleton.inverse_dynamics(*(part[i] for part in full), external_forces(loads, i))
         np.testing.assert_allclose(torque[:6], 0.0, atol=1e-9)
         np.testing.assert_allclose(torque[columns], loads.torque[i], atol=1e-9)
         points = skeleton.points(full[0][i])

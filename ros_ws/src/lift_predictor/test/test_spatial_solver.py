@@ -74,9 +74,7 @@ def test_same_optimum_as_the_reference_also_from_a_warm_start(lift) -> None:
 def test_small_warm_barrier_follows_a_changed_task_to_the_same_optimum(placed, lift) -> None:
     programme, x0 = lift
     heavier = placed(GRID, 7.05)
-    other = spatial_programme(
-        programme.assembler, GRID, heavier.parameters, heavier.bounds
-    )
+    other = spatial_programme(programme.assembler, GRID, heavier.parameters, heavier.bounds)
     first = solve(programme, x0, OPTIONS)
     changed = np.clip(first.x, other.lower, other.upper)
     warm = solve(other, changed, OPTIONS, first)

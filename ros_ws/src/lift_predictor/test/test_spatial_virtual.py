@@ -153,8 +153,6 @@ def test_condensed_matrix(case) -> None:
         unit = np.zeros(assembler.n)
         unit[column] = 1.0
         steps = [group.inputs(unit) for group in reference.groups]
-        expected = reference.gathered(
-            reference.per_node('curved', x, multipliers, weights, steps)
-        )
+        expected = reference.gathered(reference.per_node('curved', x, multipliers, weights, steps))
         size = 1e-10 * np.abs(matrix).max()
         np.testing.assert_allclose(matrix[:, column], expected, rtol=1e-8, atol=size)

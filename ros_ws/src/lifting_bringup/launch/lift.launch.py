@@ -41,9 +41,7 @@ def managed_node(name: str, condition: IfCondition | None = None) -> list:
         )
 
     configure = RegisterEventHandler(
-        OnProcessStart(
-            target_action=node, on_start=[change(Transition.TRANSITION_CONFIGURE)]
-        )
+        OnProcessStart(target_action=node, on_start=[change(Transition.TRANSITION_CONFIGURE)])
     )
     activate = RegisterEventHandler(
         OnStateTransition(

@@ -83,8 +83,10 @@ def compare_opensim(options: CompareOptions, say: Callable[[str], None]) -> Comp
         # Before anything else: to say after a minute that OpenSim is not there helps nobody.
         python = None if options.export_only else find_opensim(options.opensim_python)
         if options.criterion != Criterion.SQUARES:
-            say(f'criterion {options.criterion} here, sum of squares in OpenSim, which has only '
-                f'sums of powers: {", ".join(DIFFERENT_PROBLEM)} are not compared')
+            say(
+                f'criterion {options.criterion} here, sum of squares in OpenSim, which has only '
+                f'sums of powers: {", ".join(DIFFERENT_PROBLEM)} are not compared'
+            )
         recorded = recorded_lifts(options.bag)
         found = recorded.lift(options.lift)
         settings = MuscleAnalyzerOptions(
@@ -108,9 +110,7 @@ def compare_opensim(options: CompareOptions, say: Callable[[str], None]) -> Comp
         say(f'OpenSim {python.version} solves {rows.size} instants, some seconds each')
         run_referee(python, options.output, splined.time[rows], say)
         own = OwnSide(splined, settings)
-        run = read_opensim(
-            options.output, splined, own.muscle_names, own.coordinate_names, rows
-        )
+        run = read_opensim(options.output, splined, own.muscle_names, own.coordinate_names, rows)
         result = compare(motion, splined, rows, run, settings)
     except (MuscleAnalyzerError, HumanModelError) as error:
         raise SessionError(str(error)) from error

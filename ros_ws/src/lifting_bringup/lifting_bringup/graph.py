@@ -99,8 +99,10 @@ class Graph:
                 raise TransitionError(f'{name}: no answer from {", ".join(waiting)}')
             if patient and waiting and time.monotonic() > began + PATIENCE:
                 patient = False
-                self._say(f'waiting for {", ".join(waiting)} to {name}: after a change of the '
-                          'code they compile their models, which takes a minute or two')
+                self._say(
+                    f'waiting for {", ".join(waiting)} to {name}: after a change of the '
+                    'code they compile their models, which takes a minute or two'
+                )
             self._executor.spin_once(timeout_sec=0.02)
         for client in clients.values():
             self._node.destroy_client(client)

@@ -42,9 +42,7 @@ class Deafness:
     def begin(self) -> None:
         """Ignore the signals from now on."""
         if threading.current_thread() is threading.main_thread() and not self._before:
-            self._before = {
-                number: signal.signal(number, signal.SIG_IGN) for number in STOPPING
-            }
+            self._before = {number: signal.signal(number, signal.SIG_IGN) for number in STOPPING}
 
     def end(self) -> None:
         """Heed the signals as before."""

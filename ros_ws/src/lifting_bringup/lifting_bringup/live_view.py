@@ -15,12 +15,7 @@ from rich.text import Text
 
 from lifting_bringup.live_state import Kind, Line, LiveState
 
-_STYLE = {
-    Kind.PLAIN: '',
-    Kind.GOOD: 'green',
-    Kind.WARNING: 'yellow',
-    Kind.ALARM: 'bold red',
-}
+_STYLE = {Kind.PLAIN: '', Kind.GOOD: 'green', Kind.WARNING: 'yellow', Kind.ALARM: 'bold red'}
 
 #: Width of a gauge [characters].
 _WIDTH = 40

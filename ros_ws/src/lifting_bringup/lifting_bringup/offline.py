@@ -124,9 +124,7 @@ class OfflineGraph:
             self._take(self._tracker.push_box(*tracker_messages.box_from_msg(message)))
         else:
             side = topic.split('/')[1]
-            self._take(
-                self._tracker.push_wrench(side, *tracker_messages.wrench_from_msg(message))
-            )
+            self._take(self._tracker.push_wrench(side, *tracker_messages.wrench_from_msg(message)))
 
     def _begin(self) -> None:
         if self._subject is None or self._task is None:
@@ -219,9 +217,7 @@ class OfflineGraph:
         result = self._monitor.assess(
             loads, parts.loads(PREDICTED), parts.ends, parts.no_prediction
         )
-        self._emit(
-            'risk_assessment', monitor_messages.assessment_to_msg(result, parts.start)
-        )
+        self._emit('risk_assessment', monitor_messages.assessment_to_msg(result, parts.start))
 
     def _predict(self, message: Any, parts: Any) -> None:
         assert self._tracker is not None

@@ -99,9 +99,7 @@ def _header(planned: PlannedLift, entry: TaskFile) -> Header:
 
 def _facts(planned: PlannedLift, files: PlanFiles) -> tuple[tuple[str, str], ...]:
     task, summary = planned.task, files.summary
-    places = ' to '.join(
-        f'({x:.2f}, {y:.2f}, {z:.2f}) m' for x, y, z in (task.start, task.end)
-    )
+    places = ' to '.join(f'({x:.2f}, {y:.2f}, {z:.2f}) m' for x, y, z in (task.start, task.end))
     asked = 'the largest' if task.box_mass is None else f'{task.box_mass:.2f} kg'
     given = (('Box', asked), ('Centre of the box, forward, left, up', places))
     if summary is None:

@@ -92,5 +92,3 @@ def _push(tracker: MotionTracker, topic: str, message: Any) -> list[Output]:
         case [_, side, 'wrench']:
             return tracker.push_wrench(side, *conversions.wrench_from_msg(message))
     return []
-
-

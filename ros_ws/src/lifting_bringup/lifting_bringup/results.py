@@ -228,9 +228,7 @@ def _torques(entry: LiftMessages) -> Pair[Any]:
         if comparison is None or not comparison.torque_names
         else curves.torques(comparison, comparison.time_from_start)
     )
-    return Pair(
-        measured, missing or curves.torques(predicted, predicted.motion.time_from_start)
-    )
+    return Pair(measured, missing or curves.torques(predicted, predicted.motion.time_from_start))
 
 
 def _comparison(entry: LiftMessages) -> Any:

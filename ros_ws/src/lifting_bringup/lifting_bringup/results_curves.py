@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from human_model.errors import HumanModelError
 from human_model.motion import BodyMotion
+from human_model.typing import Array
 from lift_predictor.core.exceptions import LiftPredictorError
 from lift_predictor.core.sagittal.person import Person
 from lift_predictor.core.sagittal.plane import SagittalPlane, sagittal_motion
@@ -26,8 +27,6 @@ from lifting_bringup.report.data import (
     Torques,
 )
 from lifting_node.conversions import motion_from_msg
-
-Array = npt.NDArray[np.float64]
 
 #: Spine flexion is shown positive; the sagittal model's first coordinate is extension.
 _SIGNS = np.array([-1.0, 1.0, 1.0, 1.0, 1.0, 1.0])

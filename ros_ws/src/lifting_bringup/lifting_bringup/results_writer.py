@@ -37,9 +37,7 @@ class ResultsWriter:
         self._station = station
         self._folder = path.with_suffix('.writing')
         shutil.rmtree(self._folder, ignore_errors=True)
-        self._writer = Writer(
-            self._folder, version=BAG_VERSION, storage_plugin=StoragePlugin.MCAP
-        )
+        self._writer = Writer(self._folder, version=BAG_VERSION, storage_plugin=StoragePlugin.MCAP)
         self._writer.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
         self._store = typestore()
         self._connections: dict[str, Connection] = {}

@@ -67,11 +67,7 @@ PLATES = ('force_plates/right/wrench', 'force_plates/left/wrench')
 INPUTS = ('markers', 'box/pose', *PLATES)
 
 #: Topics of the results that a graph may offer once a frame; the rest comes once a lift.
-_QOS = {
-    'subject': qos.LATCHED,
-    'task': qos.LATCHED,
-    'spine_load': qos.FRAMES,
-}
+_QOS = {'subject': qos.LATCHED, 'task': qos.LATCHED, 'spine_load': qos.FRAMES}
 
 #: Said when a recording ends without a lift.
 NO_LIFT = 'no lift found: nothing rose as motion_tracker asks for'
@@ -212,9 +208,7 @@ def run_online(
         stack.callback(executor.shutdown)
         # The processes end before this one's node does, whatever happens to that: after an
         # interruption rclpy can wait for ever in destroy_node.
-        stack.callback(
-            faulthandler.dump_traceback_later, CLOSING, exit=True, file=sys.__stderr__
-        )
+        stack.callback(faulthandler.dump_traceback_later, CLOSING, exit=True, file=sys.__stderr__)
         stack.callback(stop_all, [*helpers, *processes])
         stack.callback(deafness.begin)
         executor.add_node(node)
@@ -230,9 +224,7 @@ def run_online(
         return RunReport(_collect(options.output), session.state, ready, codes)
 
 
-def _start_helpers(
-    options: RunOptions, logs: Path, summary: BagSummary
-) -> list[NodeProcess]:
+def _start_helpers(options: RunOptions, logs: Path, summary: BagSummary) -> list[NodeProcess]:
     wanted = RESULT_TOPICS + (VISUALIZATION_TOPICS if options.record_visualization else ())
     topics = [
         topic if topic.startswith('/') else f'/{options.station}/{topic}' for topic in wanted
@@ -248,8 +240,17 @@ def _start_helpers(
         'lifting_bringup.cli',
         logs,
         arguments=(
-            'play', str(options.bag), '--rate', str(options.rate), '--station', options.station,
-            '--start-paused', '--wait-timeout', '600', '--wait-for', *summary.inputs,
+            'play',
+            str(options.bag),
+            '--rate',
+            str(options.rate),
+            '--station',
+            options.station,
+            '--start-paused',
+            '--wait-timeout',
+            '600',
+            '--wait-for',
+            *summary.inputs,
         ),
         terminal=True,
     )

@@ -17,9 +17,7 @@ def add_to(commands: Any) -> None:
     parser.add_argument(
         'subject', type=Path, help='subject file or task file (YAML) with a section subject'
     )
-    parser.add_argument(
-        '-o', '--output', type=Path, help='URDF file (default: <pseudonym>.urdf)'
-    )
+    parser.add_argument('-o', '--output', type=Path, help='URDF file (default: <pseudonym>.urdf)')
     parser.set_defaults(handler=_run)
 
 

@@ -45,8 +45,7 @@ def files(standing, tmp_path):
             columns += [f'ground_force_{plate.name}_{what}{axis}' for axis in 'xyz']
             values.append(block)
     write_storage(
-        tmp_path / 'a.mot',
-        Storage('a', tuple(columns), file.time, np.concatenate(values, axis=1)),
+        tmp_path / 'a.mot', Storage('a', tuple(columns), file.time, np.concatenate(values, axis=1))
     )
     (tmp_path / 'subject.yaml').write_text(standing.subject_file)
     return ImportOptions(

@@ -11,12 +11,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from lifting_bringup.bags.exceptions import FileFormatError
-from lifting_bringup.bags.opensim_files import (
-    MarkerTable,
-    read_storage,
-    read_trc,
-    write_trc,
-)
+from lifting_bringup.bags.opensim_files import MarkerTable, read_storage, read_trc, write_trc
 from lifting_bringup.bags.opensim_forces import plates_from_storage
 from muscle_analyzer.core.opensim.storage import Storage, write_storage
 
@@ -152,9 +147,7 @@ def test_nan_in_forces_is_named():
 def test_missing_force_column_is_named():
     whole = storage()
     keep = [i for i, c in enumerate(whole.columns) if c != 'ground_force_1_pz']
-    part = Storage(
-        'x', tuple(whole.columns[i] for i in keep), whole.time, whole.values[:, keep]
-    )
+    part = Storage('x', tuple(whole.columns[i] for i in keep), whole.time, whole.values[:, keep])
     with pytest.raises(FileFormatError, match='ground_force_1_pz'):
         plates_from_storage('grf.mot', part)
 
@@ -164,7 +157,5 @@ def test_torque_columns_of_the_older_naming(before):
     columns = [f'{before}force_{w}{a}' for w in 'vp' for a in 'xyz']
     columns += [f'{before}torque_{a}' for a in 'xyz']
     values = np.tile([0.0, 10.0, 0.0, 1.0, 0.0, 0.0, 0.0, 2.0, 0.0], (2, 1))
-    plates = plates_from_storage(
-        'x.mot', Storage('x', tuple(columns), np.arange(2.0), values)
-    )
+    plates = plates_from_storage('x.mot', Storage('x', tuple(columns), np.arange(2.0), values))
     np.testing.assert_allclose(plates[0].moment[0], (0.0, 2.0, 10.0))

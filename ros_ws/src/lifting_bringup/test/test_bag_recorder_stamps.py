@@ -48,8 +48,15 @@ def test_empty_list_has_no_stamp():
     assert _stamp(data, _stamp_place(typestore(), 'tf2_msgs/msg/TFMessage')) == 0
 
 
-@pytest.mark.parametrize('name', ['std_msgs/msg/String', 'std_msgs/msg/Empty',
-                                  'std_msgs/msg/Float64MultiArray', 'geometry_msgs/msg/Polygon'])
+@pytest.mark.parametrize(
+    'name',
+    [
+        'std_msgs/msg/String',
+        'std_msgs/msg/Empty',
+        'std_msgs/msg/Float64MultiArray',
+        'geometry_msgs/msg/Polygon',
+    ],
+)
 def test_messages_without_stamp(name):
     assert _stamp_place(typestore(), name) == 0
 

@@ -103,9 +103,7 @@ def test_without_opensim_it_says_so_before_any_work(tmp_path, capsys, monkeypatc
     ],
 )
 def test_instants(options, want):
-    chosen = module._instants(
-        CompareOptions(BAG, BAG, **options), np.linspace(1.0, 4.0, 301)
-    )
+    chosen = module._instants(CompareOptions(BAG, BAG, **options), np.linspace(1.0, 4.0, 301))
     assert chosen == pytest.approx(want)
 
 

@@ -29,8 +29,12 @@ def spine_load(source, compression, shear, status, seconds=2.0):
     """Return a block of spine load."""
     return at(
         SpineLoad(
-            lift_id='lift_001', source=source, body_mass=63.5, compression=compression,
-            anterior_shear=shear, status=status,
+            lift_id='lift_001',
+            source=source,
+            body_mass=63.5,
+            compression=compression,
+            anterior_shear=shear,
+            status=status,
         ),
         seconds,
     )
@@ -76,8 +80,12 @@ def test_an_alarm_names_value_limit_and_margin(state):
     (line,) = state.update(
         at(
             AlarmEvent(
-                alarm_id='compression_action', state=AlarmEvent.UNACKNOWLEDGED_ACTIVE,
-                value=3612.0, limit=3400.0, margin=-212.0, unit='N',
+                alarm_id='compression_action',
+                state=AlarmEvent.UNACKNOWLEDGED_ACTIVE,
+                value=3612.0,
+                limit=3400.0,
+                margin=-212.0,
+                unit='N',
             ),
             2.0,
         )

@@ -110,8 +110,10 @@ def test_processes_that_do_not_end_are_broken_off_then_killed_side_by_side(
     # Ignored: as in a command that a shell has started in the background.
     before = signal.signal(signal.SIGINT, inherited)
     try:
-        processes = [start_module(name, 'stubborn', tmp_path, arguments=(kind,))
-                     for name, kind in kinds.items()]
+        processes = [
+            start_module(name, 'stubborn', tmp_path, arguments=(kind,))
+            for name, kind in kinds.items()
+        ]
     finally:
         signal.signal(signal.SIGINT, before)
     deadline = time.monotonic() + 30.0

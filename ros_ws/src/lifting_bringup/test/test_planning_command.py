@@ -32,8 +32,16 @@ def changed(tmp_path: Path, old: str, new: str) -> Path:
 def test_example_is_planned_printed_and_written(tmp_path: Path, capsys) -> None:
     assert main(['predict', str(EXAMPLES / 'stoop_8kg.yaml'), '--output', str(tmp_path)]) == 0
     printed = capsys.readouterr().out
-    for words in ('stoop_8kg: OK', 'box      8.00 kg', 'hip_flexion', 'limits touched',
-                  'ground reaction', 'box path', 'L5-S1 compression up to', '3400 N'):
+    for words in (
+        'stoop_8kg: OK',
+        'box      8.00 kg',
+        'hip_flexion',
+        'limits touched',
+        'ground reaction',
+        'box path',
+        'L5-S1 compression up to',
+        '3400 N',
+    ):
         assert words in printed
     plan = json.loads((tmp_path / 'plan.json').read_text(encoding='utf-8'))
     assert plan['report']['status'] == 0
@@ -53,9 +61,16 @@ def test_example_is_planned_printed_and_written(tmp_path: Path, capsys) -> None:
     assert found['predicted_lift'].subject == found['subject'].pseudonym == 'woman_160'
     page = (tmp_path / 'report.html').read_text(encoding='utf-8')
     assert f'report   {tmp_path / "report.html"}' in printed
-    for words in ('Planned lift: stoop_8kg', 'can be done', 'Peak L5-S1 compression',
-                  'Hip (flexion', 'dynamic strength', 'Ground reaction', 'NOBODY LIFTED THIS',
-                  'woman_160'):
+    for words in (
+        'Planned lift: stoop_8kg',
+        'can be done',
+        'Peak L5-S1 compression',
+        'Hip (flexion',
+        'dynamic strength',
+        'Ground reaction',
+        'NOBODY LIFTED THIS',
+        'woman_160',
+    ):
         assert words in page
     assert page.count('<svg') == 7
     assert 'cannot be done' not in page

@@ -26,8 +26,13 @@ def test_messages_come_back_as_they_were(tmp_path):
     path = JointTrajectory(
         joint_names=['a'], points=[JointTrajectoryPoint(positions=[1.5]), JointTrajectoryPoint()]
     )
-    messages = {'joint_states': joints, 'predicted_lift': failed, 'risk_assessment': risk,
-                'task': task, 'path': path}
+    messages = {
+        'joint_states': joints,
+        'predicted_lift': failed,
+        'risk_assessment': risk,
+        'task': task,
+        'path': path,
+    }
     with ResultsWriter(tmp_path / 'results.mcap', 'cell') as writer:
         for topic, message in messages.items():
             message.header.stamp.sec = 7

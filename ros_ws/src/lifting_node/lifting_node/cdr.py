@@ -8,12 +8,7 @@ import importlib
 import struct
 from typing import Any, Final
 
-from rosidl_parser.definition import (
-    BasicType,
-    NamespacedType,
-    UnboundedSequence,
-    UnboundedString,
-)
+from rosidl_parser.definition import BasicType, NamespacedType, UnboundedSequence, UnboundedString
 
 #: Before the content of a little-endian message; alignment is counted from behind it.
 LITTLE_ENDIAN_HEAD: Final = b'\0\1\0\0'

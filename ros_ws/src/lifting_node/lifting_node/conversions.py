@@ -18,9 +18,8 @@ from lifting_interfaces.msg import Subject as SubjectMsg
 from human_model.motion import BodyMotion, Lift
 from human_model.report import SolveReport, SolveStatus
 from human_model.subject import Calibration, Subject
+from human_model.typing import Array
 from lifting_node.stamps import to_seconds, to_stamp
-
-Array = npt.NDArray[np.float64]
 
 #: Frame of all Cartesian values: x forward, y left, z up, on the floor.
 LABORATORY = 'world'

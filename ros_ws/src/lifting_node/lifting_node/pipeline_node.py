@@ -49,9 +49,7 @@ class PipelineNode(LifecycleNode):
         self._inputs: list[Subscription] = []
         self._outputs: list[LifecyclePublisher] = []
         self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', 10)
-        self.create_timer(
-            1.0, self._each_second, clock=Clock(clock_type=ClockType.STEADY_TIME)
-        )
+        self.create_timer(1.0, self._each_second, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def build(self) -> None:
         """Load the model, create the pipeline, publishers and subscriptions (the slow part)."""
@@ -78,9 +76,7 @@ class PipelineNode(LifecycleNode):
             except self.INPUT_ERRORS as error:
                 self.report_error(f'{topic}: {error}')
 
-        self._inputs.append(
-            self.create_subscription(message_type, topic, guarded, qos, raw=raw)
-        )
+        self._inputs.append(self.create_subscription(message_type, topic, guarded, qos, raw=raw))
 
     def advertise(self, message_type: type, topic: str, qos: QoSProfile) -> LifecyclePublisher:
         """Create a publisher that is silent unless the node is active."""

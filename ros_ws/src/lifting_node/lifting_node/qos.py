@@ -9,12 +9,7 @@ enough for the slowest reader at ten times real time, not best effort.
 
 from __future__ import annotations
 
-from rclpy.qos import (
-    DurabilityPolicy,
-    HistoryPolicy,
-    QoSProfile,
-    ReliabilityPolicy,
-)
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
 #: Samples of a 2500 Hz force plate in 16 s: how far a reader may fall behind without loss.
 PLATE_DEPTH = 40_000

@@ -36,8 +36,12 @@ def torques(names=('knee', 'hip_r'), torque=(1.0, 2.0), frame_id='world', status
 
 
 @settings(deadline=None)
-@given(st.lists(TEXT, max_size=4).map(tuple), NUMBERS, TEXT,
-       st.lists(st.integers(0, 65535), max_size=4))
+@given(
+    st.lists(TEXT, max_size=4).map(tuple),
+    NUMBERS,
+    TEXT,
+    st.lists(st.integers(0, 65535), max_size=4),
+)
 def test_middleware_and_view_read_what_was_written(names, torque, frame_id, status):
     values = torques(names, torque, frame_id, status)
     data, wanted = TORQUES.write(values), TORQUES.make(values)
@@ -85,8 +89,10 @@ def test_message_within_a_message_and_single_numbers():
 def _values_of(message):
     """Return the values of a message's fields, parts as mappings."""
     values = {name: getattr(message, name) for name in message.get_fields_and_field_types()}
-    return {name: _values_of(value) if hasattr(value, 'SLOT_TYPES') else value
-            for name, value in values.items()}
+    return {
+        name: _values_of(value) if hasattr(value, 'SLOT_TYPES') else value
+        for name, value in values.items()
+    }
 
 
 def test_a_kind_of_field_that_is_not_known_is_refused():

@@ -40,7 +40,13 @@ def make_motion(n=3):
 
 
 SUBJECT = Subject(
-    'p07', 'female', 61.0, 1.66, 44.0, -0.5, {'thigh': 0.4},
+    'p07',
+    'female',
+    61.0,
+    1.66,
+    44.0,
+    -0.5,
+    {'thigh': 0.4},
     Calibration(('C7', 'LASI'), ('thorax', 'pelvis'), np.arange(6.0).reshape(2, 3), {}, 0.004),
 )
 
@@ -71,7 +77,12 @@ def test_lift_survives_a_message():
     """Window, masses and report come back."""
     motion = make_motion()
     lift = Lift(
-        'lift_001', 'measured', motion.time[0], motion.time[-1], 7.0, motion,
+        'lift_001',
+        'measured',
+        motion.time[0],
+        motion.time[-1],
+        7.0,
+        motion,
         SolveReport(SolveStatus.TRACKER_NOT_CONVERGED, 'frame 2', 40, 1.0, 2.0, 3.0, 4.0, 5.0),
     )
     back = conversions.lift_from_msg(

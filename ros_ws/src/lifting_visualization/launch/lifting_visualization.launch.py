@@ -15,15 +15,18 @@ from launch import LaunchDescription
 def generate_launch_description() -> LaunchDescription:
     """Return the launch description."""
     parameters = Path(get_package_share_directory('lifting_visualization')) / 'config'
-    return LaunchDescription([
-        DeclareLaunchArgument('station', default_value='station_1',
-                              description='Namespace of the station'),
-        LifecycleNode(
-            package='lifting_visualization',
-            executable='lifting_visualization_node',
-            name='lifting_visualization',
-            namespace=LaunchConfiguration('station'),
-            parameters=[str(parameters / 'lifting_visualization.yaml')],
-            output='screen',
-        ),
-    ])
+    return LaunchDescription(
+        [
+            DeclareLaunchArgument(
+                'station', default_value='station_1', description='Namespace of the station'
+            ),
+            LifecycleNode(
+                package='lifting_visualization',
+                executable='lifting_visualization_node',
+                name='lifting_visualization',
+                namespace=LaunchConfiguration('station'),
+                parameters=[str(parameters / 'lifting_visualization.yaml')],
+                output='screen',
+            ),
+        ]
+    )

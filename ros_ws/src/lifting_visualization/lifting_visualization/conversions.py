@@ -89,8 +89,11 @@ class TransformWriter:
     """
 
     def __init__(self, parents: Sequence[str], children: Sequence[str]) -> None:
-        message = TFMessage(transforms=[
-            _named(parent, child) for parent, child in zip(parents, children, strict=True)])
+        message = TFMessage(
+            transforms=[
+                _named(parent, child) for parent, child in zip(parents, children, strict=True)
+            ]
+        )
         # Numbers that occur nowhere else mark the places.
         marks = 0.5 + np.arange(7.0 * len(children)).reshape(-1, 7)
         for k, (entry, values) in enumerate(zip(message.transforms, marks.tolist(), strict=True)):
@@ -100,8 +103,8 @@ class TransformWriter:
         self._data = np.frombuffer(bytearray(serialize_message(message)), np.uint8)
         # CDR aligns numbers to their size, counted from after the four bytes of its head.
         body = self._data[_HEAD:]
-        self._numbers = body[:body.size // 8 * 8].view(np.float64)
-        self._words = body[:body.size // 4 * 4].view(np.int32)
+        self._numbers = body[: body.size // 8 * 8].view(np.float64)
+        self._words = body[: body.size // 4 * 4].view(np.int32)
         self._at = np.array([np.flatnonzero(self._numbers == mark) for mark in marks.ravel()])
         stamps = _MARK + np.arange(len(marks))
         self._stamps = np.array([np.flatnonzero(self._words == mark) for mark in stamps])
@@ -148,10 +151,13 @@ def loads_from_msg(message: SpineLoad) -> SpineLoads:
     turn = np.asarray(message.disc_orientation, np.float64)
     n = time.size
     if not n or (values.size, status.size, place.size, turn.size) != (n, n, 3 * n, 4 * n):
-        raise PictureError(f'spine_load: {n} times, {values.size} compressions, {status.size} '
-                           f'statuses, {place.size} numbers of disc_position, {turn.size} of '
-                           'disc_orientation')
+        raise PictureError(
+            f'spine_load: {n} times, {values.size} compressions, {status.size} '
+            f'statuses, {place.size} numbers of disc_position, {turn.size} of '
+            'disc_orientation'
+        )
     if not message.header.frame_id:
         raise PictureError('spine_load.header.frame_id: empty')
-    return SpineLoads(time, np.where(status == 0, values, np.nan), place.reshape(n, 3),
-                      turn.reshape(n, 4))
+    return SpineLoads(
+        time, np.where(status == 0, values, np.nan), place.reshape(n, 3), turn.reshape(n, 4)
+    )

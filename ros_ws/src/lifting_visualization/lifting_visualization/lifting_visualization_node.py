@@ -48,11 +48,20 @@ class LiftingVisualizationNode(PipelineNode):
     def build(self) -> None:
         """Create the visualizer, its publishers and subscriptions."""
         values = self.values
-        self.visualizer = Visualizer(Options(
-            rate=values['rate'], force_length=values['force_length'],
-            compression=SpineScale(values['compression_action'], values['compression_maximum'],
-                                   values['compression_length']),
-            fresh=values['fresh'], pause=values['pause'], prefix=self._prefix()))
+        self.visualizer = Visualizer(
+            Options(
+                rate=values['rate'],
+                force_length=values['force_length'],
+                compression=SpineScale(
+                    values['compression_action'],
+                    values['compression_maximum'],
+                    values['compression_length'],
+                ),
+                fresh=values['fresh'],
+                pause=values['pause'],
+                prefix=self._prefix(),
+            )
+        )
         self._writer: conversions.TransformWriter | None = None
         self._disc: dict[str, conversions.TransformWriter] = {}
         # Last stamp of live motion and when it came, by the data's and by the machine's clock.
@@ -152,8 +161,9 @@ class LiftingVisualizationNode(PipelineNode):
     def _on_predicted_lift(self, message: PredictedLift) -> None:
         motion = motion_from_msg(message.motion) if message.report.status == 0 else None
         self._shown = time.monotonic()
-        self._draw(self.visualizer.set_predicted(message.lift_id, motion, message.box_mass),
-                   self._now())
+        self._draw(
+            self.visualizer.set_predicted(message.lift_id, motion, message.box_mass), self._now()
+        )
 
     def _show_ghost(self) -> None:
         if self.active and self.visualizer.ghost is not None:

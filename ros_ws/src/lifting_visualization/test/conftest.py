@@ -31,8 +31,10 @@ def motion_at(skeleton):
 
     def make(stamp, **forces):
         q = skeleton.standing()
-        loaded = {'ground_force': [[[0.0, 0.0, 600.0], [0.0, 0.0, 0.0]]],
-                  'cop': [[[0.05, -0.1, 0.0], [np.nan] * 3]]}
+        loaded = {
+            'ground_force': [[[0.0, 0.0, 600.0], [0.0, 0.0, 0.0]]],
+            'cop': [[[0.05, -0.1, 0.0], [np.nan] * 3]],
+        }
         return skeleton.body_motion(stamp, q, 0.0 * q, 0.0 * q, **(loaded | forces))
 
     return make
@@ -41,7 +43,10 @@ def motion_at(skeleton):
 @pytest.fixture
 def visualizer(woman):
     """Return a visualizer at 50 Hz that knows the person."""
-    made = Visualizer(Options(rate=50.0, force_length=1e-3, compression=SCALE, fresh=0.2,
-                              pause=0.5, prefix='cell_3/'))
+    made = Visualizer(
+        Options(
+            rate=50.0, force_length=1e-3, compression=SCALE, fresh=0.2, pause=0.5, prefix='cell_3/'
+        )
+    )
     assert made.set_subject(woman)
     return made

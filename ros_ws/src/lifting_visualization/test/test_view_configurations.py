@@ -53,10 +53,14 @@ def test_foxglove_shows_topics_and_fields_that_exist():
 def test_foxglove_draws_the_limits_of_the_parameters():
     table = Path(__file__).parents[1] / 'lifting_visualization' / 'data' / 'parameters.yaml'
     parameters = yaml.safe_load(table.read_text(encoding='utf-8'))
-    lines = [float(path['value']) for path in foxglove()['configById']['Plot!compression']['paths']
-             if not path['value'].startswith('/')]
-    assert lines == [parameters[f'compression_{name}']['default']
-                     for name in ('action', 'maximum')]
+    lines = [
+        float(path['value'])
+        for path in foxglove()['configById']['Plot!compression']['paths']
+        if not path['value'].startswith('/')
+    ]
+    assert lines == [
+        parameters[f'compression_{name}']['default'] for name in ('action', 'maximum')
+    ]
 
 
 def test_rviz_asks_for_what_is_offered():
@@ -64,9 +68,11 @@ def test_rviz_asks_for_what_is_offered():
     manager = file['Visualization Manager']
     assert manager['Global Options']['Fixed Frame'] == 'world'
     displays = {display['Class'].rpartition('/')[2]: display for display in manager['Displays']}
-    offered = {'MarkerArray': ('Topic', 'visualization', qos.VIEW),
-               'RobotModel': ('Description Topic', 'robot_description', qos.LATCHED),
-               'Wrench': ('Topic', 'l5_s1/reaction', qos.FRAMES)}
+    offered = {
+        'MarkerArray': ('Topic', 'visualization', qos.VIEW),
+        'RobotModel': ('Description Topic', 'robot_description', qos.LATCHED),
+        'Wrench': ('Topic', 'l5_s1/reaction', qos.FRAMES),
+    }
     for name, (key, topic, profile) in offered.items():
         asked = displays[name][key]
         assert asked['Value'] == STATION + topic

@@ -42,16 +42,26 @@ def test_a_missing_point_is_named(skeleton):
         drawing.body('person', tuple(n if n != 'c7' else 'neck' for n in POINTS), points, GREY)
 
 
-@pytest.mark.parametrize(('value', 'role'), [
-    (0.0, 'below_limit'), (3399.9, 'below_limit'), (3400.0, 'above_action'),
-    (6399.9, 'above_action'), (6400.0, 'above_maximum'), (9000.0, 'above_maximum')])
+@pytest.mark.parametrize(
+    ('value', 'role'),
+    [
+        (0.0, 'below_limit'),
+        (3399.9, 'below_limit'),
+        (3400.0, 'above_action'),
+        (6399.9, 'above_action'),
+        (6400.0, 'above_maximum'),
+        (9000.0, 'above_maximum'),
+    ],
+)
 def test_colour_changes_at_the_limits(value, role):
     arrow, text = drawing.compression('l5_s1', np.zeros(3), np.array([0, 0, 1.0]), value, SCALE)
     assert arrow.colour == text.colour == colours()[role]
 
 
-@given(st.floats(1.0, 1e4), st.tuples(*[st.floats(-1.0, 1.0)] * 3).filter(
-    lambda v: np.linalg.norm(v) > 0.1))
+@given(
+    st.floats(1.0, 1e4),
+    st.tuples(*[st.floats(-1.0, 1.0)] * 3).filter(lambda v: np.linalg.norm(v) > 0.1),
+)
 def test_arrow_of_compression_ends_in_the_disc(value, direction):
     place = np.array([0.1, 0.2, 1.0])
     arrow, text = drawing.compression('l5_s1', place, np.array(direction), value, SCALE)

@@ -14,8 +14,10 @@ from lifting_visualization.core.link_frames import LinkFrames
 def chained(links, transforms):
     """Return the pose (4, 4) in the laboratory by frame."""
     poses = {WORLD: np.eye(4)}
-    rows = [(parent, child, row[:3], row[3:])
-            for parent, child, row in zip(links.parents, links.children, transforms, strict=True)]
+    rows = [
+        (parent, child, row[:3], row[3:])
+        for parent, child, row in zip(links.parents, links.children, transforms, strict=True)
+    ]
     rows += [(parent, child, place, (0, 0, 0, 1)) for parent, child, place in links.fixed]
     for parent, child, place, turn in rows:
         step = np.eye(4)

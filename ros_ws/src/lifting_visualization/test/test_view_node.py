@@ -55,13 +55,19 @@ class Station:
         take(TFMessage, '/tf', partial(self._on_transforms, self.transforms), qos.TRANSFORMS)
         take(TFMessage, '/tf_static', partial(self._on_transforms, self.fixed), qos.LATCHED)
         take(String, 'robot_description', self.urdf.append, qos.LATCHED)
-        topics = {'subject': (Subject, qos.LATCHED), 'task': (Task, qos.LATCHED),
-                  'body_motion': (BodyMotion, qos.FRAMES), 'spine_load': (SpineLoad, qos.FRAMES),
-                  'box/pose': (PoseStamped, qos.FRAMES),
-                  'measured_lift': (MeasuredLift, qos.RESULTS),
-                  'predicted_lift': (PredictedLift, qos.RESULTS)}
-        self.publishers = {topic: self.client.create_publisher(kind, topic, profile)
-                           for topic, (kind, profile) in topics.items()}
+        topics = {
+            'subject': (Subject, qos.LATCHED),
+            'task': (Task, qos.LATCHED),
+            'body_motion': (BodyMotion, qos.FRAMES),
+            'spine_load': (SpineLoad, qos.FRAMES),
+            'box/pose': (PoseStamped, qos.FRAMES),
+            'measured_lift': (MeasuredLift, qos.RESULTS),
+            'predicted_lift': (PredictedLift, qos.RESULTS),
+        }
+        self.publishers = {
+            topic: self.client.create_publisher(kind, topic, profile)
+            for topic, (kind, profile) in topics.items()
+        }
 
     @staticmethod
     def _on_transforms(taken, message):
@@ -142,10 +148,17 @@ def test_person_motion_and_load(station, woman, motion_at):
 def load_message(stamp, **fields):
     """Return the message of a live load on a disc that leans forward by 30 degrees."""
     half = np.deg2rad(15.0)
-    message = SpineLoad(**{
-        'source': SpineLoad.LIVE, 'time_from_start': [0.0], 'compression': [6500.0],
-        'status': [0], 'disc_position': [0.1, 0.02, 1.0],
-        'disc_orientation': [0.0, np.sin(half), 0.0, np.cos(half)]} | fields)
+    message = SpineLoad(
+        **{
+            'source': SpineLoad.LIVE,
+            'time_from_start': [0.0],
+            'compression': [6500.0],
+            'status': [0],
+            'disc_position': [0.1, 0.02, 1.0],
+            'disc_orientation': [0.0, np.sin(half), 0.0, np.cos(half)],
+        }
+        | fields
+    )
     message.header.stamp = to_stamp(stamp)
     message.header.frame_id = 'cell_3/l5_s1'
     return message
@@ -195,8 +208,9 @@ def test_predicted_lift_goes_round(station, woman, skeleton):
     q = np.tile(skeleton.standing(), (n, 1))
     q[:, skeleton.index('pelvis_tx')] += np.linspace(0.0, 0.4, n)
     motion = skeleton.body_motion(3.0 + np.linspace(0.0, 0.4, n), q, 0 * q, 0 * q)
-    message = PredictedLift(lift_id='lift_001', box_mass=9.0,
-                            motion=motion_to_msg(motion, MotionQuality.exact(n)))
+    message = PredictedLift(
+        lift_id='lift_001', box_mass=9.0, motion=motion_to_msg(motion, MotionQuality.exact(n))
+    )
     station.send('predicted_lift', message)
     places = set()
     station.until(lambda: ('predicted', 0) in station.markers, 'the predicted lift')

@@ -55,8 +55,12 @@ def loads(time, compression):
     n = len(time)
     position = np.zeros((n, 3))
     position[:, 2] = 1.0 + 0.01 * np.arange(n)
-    return SpineLoads(np.asarray(time, float), np.asarray(compression, float), position,
-                      np.tile([0.0, 0.0, 0.0, 1.0], (n, 1)))
+    return SpineLoads(
+        np.asarray(time, float),
+        np.asarray(compression, float),
+        position,
+        np.tile([0.0, 0.0, 0.0, 1.0], (n, 1)),
+    )
 
 
 def test_a_late_load_is_drawn_where_the_disc_was(visualizer, motion_at, skeleton):
@@ -64,7 +68,8 @@ def test_a_late_load_is_drawn_where_the_disc_was(visualizer, motion_at, skeleton
     q = skeleton.standing() + 0.1
     visualizer.picture(skeleton.body_motion(1.01, q, 0 * q, 0 * q), 0)
     leant = loads([1.0], [3500.0])._replace(
-        position=np.array([[0.2, -0.1, 0.9]]), orientation=np.array([[0.0, 0.6, 0.0, 0.8]]))
+        position=np.array([[0.2, -0.1, 0.9]]), orientation=np.array([[0.0, 0.6, 0.0, 0.8]])
+    )
     found = by_place(visualizer.load_picture(leant))
     tail, tip = found[SPINE, 0].points
     np.testing.assert_allclose(tip, [0.2, -0.1, 0.9])
@@ -115,9 +120,12 @@ def test_ghost_is_played_in_a_loop_with_a_pause(visualizer, skeleton):
 @pytest.mark.parametrize('load_first', [True, False])
 def test_load_of_the_predicted_lift_comes_before_or_after_it(visualizer, skeleton, load_first):
     motion = lift(skeleton)
-    steps = [lambda: visualizer.set_predicted('lift_002', motion, 10.0),
-             lambda: visualizer.set_predicted_load(
-                 'lift_002', loads(motion.time, np.linspace(3000.0, 4000.0, 11)))]
+    steps = [
+        lambda: visualizer.set_predicted('lift_002', motion, 10.0),
+        lambda: visualizer.set_predicted_load(
+            'lift_002', loads(motion.time, np.linspace(3000.0, 4000.0, 11))
+        ),
+    ]
     for step in steps[::-1] if load_first else steps:
         step()
     found = by_place(visualizer.ghost_picture(0.5))
@@ -139,8 +147,12 @@ def test_a_failed_prediction_takes_the_ghost_away(visualizer, skeleton):
     places = set(by_place(shapes))
     assert visualizer.ghost_picture(0.0) == []
     visualizer.set_predicted('lift_003', lift(skeleton), 10.0)
-    drawn = by_place([*visualizer.ghost_picture(0.0), *visualizer.set_predicted(
-        'lift_003', lift(skeleton), 10.0)])
+    drawn = by_place(
+        [
+            *visualizer.ghost_picture(0.0),
+            *visualizer.set_predicted('lift_003', lift(skeleton), 10.0),
+        ]
+    )
     assert set(drawn) == places
 
 
@@ -148,7 +160,8 @@ def test_paths_of_the_hands(visualizer, skeleton):
     motion = lift(skeleton)
     report = SolveReport(SolveStatus.OK, '', 0, 0.0, 0.0, 0.0, 0.0, 0.0)
     (recorded,) = visualizer.set_measured(
-        Lift('lift_001', 'measured', 5.0, 6.0, 10.0, motion, report))
+        Lift('lift_001', 'measured', 5.0, 6.0, 10.0, motion, report)
+    )
     middle = 0.5 * (motion.point('hand_r') + motion.point('hand_l'))
     np.testing.assert_allclose(recorded.points[[0, -1]], middle[[0, -1]])
     (predicted,) = visualizer.set_predicted('lift_001', motion, 10.0)

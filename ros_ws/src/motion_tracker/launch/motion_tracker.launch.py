@@ -15,15 +15,18 @@ from launch import LaunchDescription
 def generate_launch_description() -> LaunchDescription:
     """Return the launch description."""
     parameters = Path(get_package_share_directory('motion_tracker')) / 'config'
-    return LaunchDescription([
-        DeclareLaunchArgument('station', default_value='station_1',
-                              description='Namespace of the station'),
-        LifecycleNode(
-            package='motion_tracker',
-            executable='motion_tracker_node',
-            name='motion_tracker',
-            namespace=LaunchConfiguration('station'),
-            parameters=[str(parameters / 'motion_tracker.yaml')],
-            output='screen',
-        ),
-    ])
+    return LaunchDescription(
+        [
+            DeclareLaunchArgument(
+                'station', default_value='station_1', description='Namespace of the station'
+            ),
+            LifecycleNode(
+                package='motion_tracker',
+                executable='motion_tracker_node',
+                name='motion_tracker',
+                namespace=LaunchConfiguration('station'),
+                parameters=[str(parameters / 'motion_tracker.yaml')],
+                output='screen',
+            ),
+        ]
+    )

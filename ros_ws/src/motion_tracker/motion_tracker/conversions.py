@@ -8,21 +8,19 @@ import math
 import struct
 
 import numpy as np
-import numpy.typing as npt
 from geometry_msgs.msg import PointStamped, PoseStamped, WrenchStamped
 from lifting_interfaces.msg import BodyMotion, LiftEvent, Markers, MeasuredLift, Task
 from sensor_msgs.msg import JointState
 
 from human_model.report import SolveStatus
 from human_model.subject import Subject
+from human_model.typing import Array
 from lifting_node.conversions import LABORATORY, MotionQuality, flat, lift_to_msg, motion_to_msg
 from lifting_node.stamps import to_seconds, to_stamp
 from motion_tracker.core.errors import TrackerError
 from motion_tracker.core.lift_events import LiftPhase
 from motion_tracker.core.tracked import FROM_BOX, DetectedEvent, TrackedFrame
 from motion_tracker.core.tracked import MeasuredLift as TrackedLift
-
-Array = npt.NDArray[np.float64]
 
 # Common data representation: head of a message, stamp with the length of the frame's name.
 _CDR_HEAD = 4
@@ -36,16 +34,24 @@ _POSE = struct.Struct('<7d')
 def markers_from_msg(message: Markers) -> tuple[float, list[str], Array]:
     """Return stamp [s], names and positions (n, 3) [m] of a marker frame."""
     names = [marker.marker_name for marker in message.markers]
-    positions = np.array([(marker.translation.x, marker.translation.y, marker.translation.z)
-                          for marker in message.markers], dtype=np.float64).reshape(-1, 3)
+    positions = np.array(
+        [
+            (marker.translation.x, marker.translation.y, marker.translation.z)
+            for marker in message.markers
+        ],
+        dtype=np.float64,
+    ).reshape(-1, 3)
     return to_seconds(message.header.stamp), names, positions
 
 
 def wrench_from_msg(message: WrenchStamped) -> tuple[float, Array, Array]:
     """Return stamp [s], force [N] and moment about the laboratory's origin [N m] (3,)."""
     force, moment = message.wrench.force, message.wrench.torque
-    return (to_seconds(message.header.stamp), np.array([force.x, force.y, force.z]),
-            np.array([moment.x, moment.y, moment.z]))
+    return (
+        to_seconds(message.header.stamp),
+        np.array([force.x, force.y, force.z]),
+        np.array([moment.x, moment.y, moment.z]),
+    )
 
 
 def wrench_from_cdr(data: bytes) -> tuple[float, tuple[float, ...], tuple[float, ...]]:
@@ -75,8 +81,9 @@ def box_from_cdr(data: bytes) -> tuple[float, tuple[float, ...]]:
     return stamp, values[:3]
 
 
-def _stamped_from_cdr(name: str, data: bytes, numbers: struct.Struct,
-                      ) -> tuple[float, tuple[float, ...]]:
+def _stamped_from_cdr(
+    name: str, data: bytes, numbers: struct.Struct
+) -> tuple[float, tuple[float, ...]]:
     """Return the stamp [s] of a serialised message and the numbers behind its header."""
     if len(data) < _CDR_HEAD + _STAMP.size or data[1] != _LITTLE_ENDIAN:
         raise TrackerError(f'{name}: {len(data)} bytes are no little-endian message')
@@ -104,8 +111,11 @@ def task_from_msg(message: Task) -> tuple[float, Array]:
 def joint_state_to_msg(frame: TrackedFrame) -> JointState:
     """Return names, positions and velocities of all coordinates."""
     motion = frame.motion
-    message = JointState(name=list(motion.coordinates), position=flat(motion.position),
-                         velocity=flat(motion.velocity))
+    message = JointState(
+        name=list(motion.coordinates),
+        position=flat(motion.position),
+        velocity=flat(motion.velocity),
+    )
     message.header.stamp = to_stamp(float(motion.time[0]))
     message.header.frame_id = LABORATORY
     return message
@@ -113,8 +123,12 @@ def joint_state_to_msg(frame: TrackedFrame) -> JointState:
 
 def body_motion_to_msg(frame: TrackedFrame) -> BodyMotion:
     """Return the live block of one sample."""
-    quality = MotionQuality(frame.filter_delay, np.array([int(frame.status)], dtype=np.int64),
-                            np.array([frame.solution.rms]), np.array([frame.solution.maximum]))
+    quality = MotionQuality(
+        frame.filter_delay,
+        np.array([int(frame.status)], dtype=np.int64),
+        np.array([frame.solution.rms]),
+        np.array([frame.solution.maximum]),
+    )
     return motion_to_msg(frame.motion, quality)
 
 
@@ -154,9 +168,12 @@ def event_to_msg(detected: DetectedEvent) -> LiftEvent:
     message = LiftEvent(
         lift_id=detected.lift_id,
         event=LiftEvent.START if event.phase is LiftPhase.START else LiftEvent.END,
-        detected_from=(LiftEvent.FROM_BOX if detected.detected_from == FROM_BOX
-                       else LiftEvent.FROM_HANDS),
-        height=event.height, detection_delay=event.detection_delay)
+        detected_from=(
+            LiftEvent.FROM_BOX if detected.detected_from == FROM_BOX else LiftEvent.FROM_HANDS
+        ),
+        height=event.height,
+        detection_delay=event.detection_delay,
+    )
     message.header.stamp = to_stamp(event.time)
     message.header.frame_id = LABORATORY
     return message

@@ -26,10 +26,17 @@ from motion_tracker.core.tracked import TrackedFrame
 
 #: Arrays of a body motion's message, and the fields they are taken from.
 _MOTION: Final = {
-    'position': 'position', 'velocity': 'velocity', 'acceleration': 'acceleration',
-    'points': 'points', 'frames': 'frames', 'ground_force': 'ground_force',
-    'centre_of_pressure': 'cop', 'free_moment': 'free_moment', 'hand_force': 'hand_force',
-    'box_position': 'box_position'}
+    'position': 'position',
+    'velocity': 'velocity',
+    'acceleration': 'acceleration',
+    'points': 'points',
+    'frames': 'frames',
+    'ground_force': 'ground_force',
+    'centre_of_pressure': 'cop',
+    'free_moment': 'free_moment',
+    'hand_force': 'hand_force',
+    'box_position': 'box_position',
+}
 
 
 class _Template:
@@ -74,9 +81,11 @@ class LiveWriter:
         """Return a `BodyMotion`."""
         motion, solution = frame.motion, frame.solution
         template, arrays = self._template(
-            'body_motion', (motion.coordinates, frame.filter_delay),
+            'body_motion',
+            (motion.coordinates, frame.filter_delay),
             lambda: conversions.body_motion_to_msg(frame),
-            lambda made: [(getattr(made.view, to), of) for to, of in _MOTION.items()])
+            lambda made: [(getattr(made.view, to), of) for to, of in _MOTION.items()],
+        )
         for array, field in arrays:
             array[:] = getattr(motion, field).reshape(-1)
         view = template.view
@@ -87,8 +96,9 @@ class LiveWriter:
     def joint_state(self, frame: TrackedFrame) -> bytes:
         """Return a `JointState`."""
         motion = frame.motion
-        template, _ = self._template('joint_state', motion.coordinates,
-                                     lambda: conversions.joint_state_to_msg(frame))
+        template, _ = self._template(
+            'joint_state', motion.coordinates, lambda: conversions.joint_state_to_msg(frame)
+        )
         template.view.position[:] = motion.position[0]
         template.view.velocity[:] = motion.velocity[0]
         return template.stamped(float(motion.time[0]))
@@ -98,8 +108,11 @@ class LiveWriter:
         if frame.status == SolveStatus.TRACKER_NO_GROUND_FORCE:
             return None
         template, numbers = self._template(
-            'ground_reaction', None, lambda: conversions.ground_reaction_to_msg(frame),
-            lambda made: made.last(6))
+            'ground_reaction',
+            None,
+            lambda: conversions.ground_reaction_to_msg(frame),
+            lambda made: made.last(6),
+        )
         numbers[:3] = frame.total_force
         return template.stamped(float(frame.motion.time[0]))
 
@@ -111,14 +124,19 @@ class LiveWriter:
         at = frame.total_cop if side is None else frame.motion.cop[0, side]
         if not math.isfinite(at.sum()):
             return None
-        template, numbers = self._template('cop', None,
-                                           lambda: conversions.cop_to_msg(frame, side),
-                                           lambda made: made.last(3))
+        template, numbers = self._template(
+            'cop', None, lambda: conversions.cop_to_msg(frame, side), lambda made: made.last(3)
+        )
         numbers[:] = at
         return template.stamped(float(frame.motion.time[0]))
 
-    def _template(self, kind: str, layout: Any, message: Callable[[], Any],
-                  arrays: Callable[[_Template], Any] = lambda _: None) -> tuple[_Template, Any]:
+    def _template(
+        self,
+        kind: str,
+        layout: Any,
+        message: Callable[[], Any],
+        arrays: Callable[[_Template], Any] = lambda _: None,
+    ) -> tuple[_Template, Any]:
         """Return the template of a kind of message, and its arrays; made anew with its layout."""
         known = self._templates.get(kind)
         if known is None or known[0] != layout:

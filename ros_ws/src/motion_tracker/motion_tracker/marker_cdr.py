@@ -14,10 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from human_model.typing import Array
 from lifting_node.cdr import HEAD, CdrError, Reader
 from motion_tracker.core.errors import TrackerError
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

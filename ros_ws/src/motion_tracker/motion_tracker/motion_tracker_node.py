@@ -41,8 +41,11 @@ from motion_tracker.marker_cdr import MarkerReader
 EARLY_SAMPLES: Final = 100_000
 
 #: Topics of the input streams.
-STREAMS: Final = {'markers': 'markers', 'box': 'box/pose',
-                  **{side: f'force_plates/{side}/wrench' for side in SIDES}}
+STREAMS: Final = {
+    'markers': 'markers',
+    'box': 'box/pose',
+    **{side: f'force_plates/{side}/wrench' for side in SIDES},
+}
 
 #: Marker frames between two reports of refused input.
 COUNT_FRAMES: Final = 500
@@ -75,16 +78,18 @@ class MotionTrackerNode(PipelineNode):
         self._measured = self.advertise(MeasuredLift, 'measured_lift', qos.RESULTS)
         self._reaction = self.advertise(WrenchStamped, 'ground_reaction/wrench', qos.FRAMES)
         self._total_cop = self.advertise(PointStamped, 'ground_reaction/cop', qos.FRAMES)
-        self._cop = [self.advertise(PointStamped, f'force_plates/{side}/cop', qos.FRAMES)
-                     for side in SIDES]
+        self._cop = [
+            self.advertise(PointStamped, f'force_plates/{side}/cop', qos.FRAMES) for side in SIDES
+        ]
         self.subscribe(SubjectMsg, 'subject', self._on_subject, qos.LATCHED)
         self.subscribe(Task, 'task', self._on_task, qos.LATCHED)
         self._reader = MarkerReader()
         self.subscribe(Markers, STREAMS['markers'], self._on_markers, qos.FRAMES, raw=True)
         self.subscribe(PoseStamped, STREAMS['box'], self._on_box, qos.FRAMES, raw=True)
         for side in SIDES:
-            self.subscribe(WrenchStamped, STREAMS[side],
-                           partial(self._on_wrench, side), qos.PLATES, raw=True)
+            self.subscribe(
+                WrenchStamped, STREAMS[side], partial(self._on_wrench, side), qos.PLATES, raw=True
+            )
         self._flush_service = self.create_service(Trigger, '~/flush', self._on_flush)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -95,8 +100,11 @@ class MotionTrackerNode(PipelineNode):
     def _on_subject(self, message: SubjectMsg) -> None:
         subject = subject_from_msg(message)
         known = self._subject
-        if known is not None and known[0].to_dict() == subject.to_dict() \
-                and known[1] == message.marker_set:
+        if (
+            known is not None
+            and known[0].to_dict() == subject.to_dict()
+            and known[1] == message.marker_set
+        ):
             return
         self._end_recording()
         self._subject = (subject, message.marker_set)
@@ -104,8 +112,11 @@ class MotionTrackerNode(PipelineNode):
 
     def _on_task(self, message: Task) -> None:
         task = conversions.task_from_msg(message)
-        if self._task is not None and self._task[0] == task[0] \
-                and np.array_equal(self._task[1], task[1]):
+        if (
+            self._task is not None
+            and self._task[0] == task[0]
+            and np.array_equal(self._task[1], task[1])
+        ):
             return
         self._end_recording()
         self._task = task
@@ -133,7 +144,8 @@ class MotionTrackerNode(PipelineNode):
             return
         if self._splitter.idle:
             self._splitter.expect(
-                name for name, topic in STREAMS.items() if self.count_publishers(topic))
+                name for name, topic in STREAMS.items() if self.count_publishers(topic)
+            )
         self._feed(self._splitter.push(stream, stamp, feed))
 
     def _feed(self, samples: Sequence[tuple[int, Feed]]) -> None:
@@ -155,15 +167,24 @@ class MotionTrackerNode(PipelineNode):
         """Tracker of this recording, made when person and task are known."""
         if self._tracker is None and self._subject is not None and self._task is not None:
             subject, marker_set = self._subject
-            self._tracker = tracker_from(self.values, subject, marker_set, *self._task,
-                                         first_lift=self._lifts + 1, clock=time.monotonic)
+            self._tracker = tracker_from(
+                self.values,
+                subject,
+                marker_set,
+                *self._task,
+                first_lift=self._lifts + 1,
+                clock=time.monotonic,
+            )
             self.get_logger().info(
                 f'{subject.pseudonym}: {len(self._tracker.model.names)} markers, '
-                f'{self._tracker.model_source}')
+                f'{self._tracker.model_source}'
+            )
             if self._tracker.inverse_kinematics.unseen:
                 self.get_logger().warning(
-                    'no marker sees ' + ', '.join(self._tracker.inverse_kinematics.unseen)
-                    + ': they stay at neutral')
+                    'no marker sees '
+                    + ', '.join(self._tracker.inverse_kinematics.unseen)
+                    + ': they stay at neutral'
+                )
         return self._tracker
 
     def _work_off_early(self) -> None:
@@ -190,8 +211,11 @@ class MotionTrackerNode(PipelineNode):
         self._end_recording()
         self._recording = self._splitter.current
         response.success = begun
-        response.message = (f'{self._lifts - before} lifts' if begun else
-                            'no recording under way: neither person, task nor samples came')
+        response.message = (
+            f'{self._lifts - before} lifts'
+            if begun
+            else 'no recording under way: neither person, task nor samples came'
+        )
         return response
 
     def _report_counts(self) -> None:
@@ -215,8 +239,10 @@ class MotionTrackerNode(PipelineNode):
                 self.report_error(f'frame not good: {output.message}')
         elif isinstance(output, DetectedEvent):
             self._events.publish(conversions.event_to_msg(output))
-            self.get_logger().info(f'{output.lift_id} {output.event.phase.name.lower()} at '
-                                   f'{output.event.time:.3f} s from the {output.detected_from}')
+            self.get_logger().info(
+                f'{output.lift_id} {output.event.phase.name.lower()} at '
+                f'{output.event.time:.3f} s from the {output.detected_from}'
+            )
         elif isinstance(output, TrackedLift) and self._subject is not None:
             self._measured.publish(conversions.measured_lift_to_msg(output, self._subject[0]))
             self.get_logger().info(f'{output.lift.lift_id}: {output.lift.report.message}')

@@ -49,14 +49,27 @@ def solver(person, skeleton, marker_set):
 @pytest.fixture(scope='session')
 def crouch(skeleton):
     """Coordinates of a slightly uneven crouch with arms forward."""
-    values = {'pelvis_tx': 0.1, 'pelvis_ty': 0.6, 'pelvis_tz': -0.05, 'pelvis_tilt': -0.6,
-              'lumbar_extension': -0.38, 'thorax_extension': -0.22, 'lumbar_rotation': 0.1,
-              'thorax_rotation': 0.08}
+    values = {
+        'pelvis_tx': 0.1,
+        'pelvis_ty': 0.6,
+        'pelvis_tz': -0.05,
+        'pelvis_tilt': -0.6,
+        'lumbar_extension': -0.38,
+        'thorax_extension': -0.22,
+        'lumbar_rotation': 0.1,
+        'thorax_rotation': 0.08,
+    }
     for side, extra in (('r', 0.0), ('l', 0.05)):
-        values |= {f'hip_flexion_{side}': 1.3 + extra, f'knee_angle_{side}': 1.2 - extra,
-                   f'ankle_angle_{side}': 0.3, f'arm_flex_{side}': 1.0 + extra,
-                   f'elbow_flex_{side}': 0.4, f'pro_sup_{side}': 0.2,
-                   f'hip_adduction_{side}': -0.1, f'mtp_angle_{side}': 0.05}
+        values |= {
+            f'hip_flexion_{side}': 1.3 + extra,
+            f'knee_angle_{side}': 1.2 - extra,
+            f'ankle_angle_{side}': 0.3,
+            f'arm_flex_{side}': 1.0 + extra,
+            f'elbow_flex_{side}': 0.4,
+            f'pro_sup_{side}': 0.2,
+            f'hip_adduction_{side}': -0.1,
+            f'mtp_angle_{side}': 0.05,
+        }
     return skeleton.vector(values)
 
 
@@ -70,8 +83,10 @@ def step(time, begin, duration):
 def lift(skeleton, solver, crouch, person):
     """Frames of a crouching person who rises with a box between the hands, as (kind, ...)."""
     rng = np.random.default_rng(6)
-    stand = skeleton.vector({'arm_flex_r': 0.5, 'arm_flex_l': 0.5, 'elbow_flex_r': 0.5,
-                             'elbow_flex_l': 0.5}, skeleton.standing())
+    stand = skeleton.vector(
+        {'arm_flex_r': 0.5, 'arm_flex_l': 0.5, 'elbow_flex_r': 0.5, 'elbow_flex_l': 0.5},
+        skeleton.standing(),
+    )
     markers, box, wrench = [], [], []
     for i in range(300):
         t = i / 100.0
@@ -85,8 +100,9 @@ def lift(skeleton, solver, crouch, person):
         for k in range(2):
             for side, y in (('right', -0.15), ('left', 0.15)):
                 force = np.array([0.0, 0.0, weight]) + rng.normal(0.0, 1.0, 3)
-                wrench.append((side, LIFT_START + t + k / 200.0, force,
-                               np.cross([0.1, y, 0.0], force)))
+                wrench.append(
+                    (side, LIFT_START + t + k / 200.0, force, np.cross([0.1, y, 0.0], force))
+                )
     return markers, box, wrench
 
 
@@ -95,7 +111,7 @@ def read_trc(path):
     lines = path.read_text(encoding='utf-8').splitlines()
     names = [name for name in lines[3].split('\t')[2:] if name.strip()]
     rows = [line.split('\t') for line in lines[5:] if line.split('\t')[0].strip()]
-    table = np.array([[float(cell) for cell in row[1:2 + 3 * len(names)]] for row in rows])
+    table = np.array([[float(cell) for cell in row[1 : 2 + 3 * len(names)]] for row in rows])
     xyz = table[:, 1:].reshape(len(table), -1, 3)
     return names, table[:, 0], np.stack([xyz[..., 0], -xyz[..., 2], xyz[..., 1]], axis=-1)
 
@@ -107,7 +123,7 @@ def read_wrenches(path):
     turn = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
     wrenches = {}
     for k, side in enumerate(('right', 'left')):
-        force, at, free = (table[:, 1 + 9 * k + 3 * i:4 + 9 * k + 3 * i] for i in range(3))
+        force, at, free = (table[:, 1 + 9 * k + 3 * i : 4 + 9 * k + 3 * i] for i in range(3))
         wrenches[side] = (force @ turn.T, (np.cross(at, force) + free) @ turn.T)
     return table[:, 0], wrenches
 
@@ -124,5 +140,12 @@ def squats():
     names, time, positions = read_trc(SQUATS / 'squats1.trc')
     plate_time, wrenches = read_wrenches(SQUATS / 'squats1_grf.mot')
     assert np.array_equal(plate_time, time)
-    return Squats(replace(subject, calibration=calibrated.calibration), markers, calibrated,
-                  names, time, positions, wrenches)
+    return Squats(
+        replace(subject, calibration=calibrated.calibration),
+        markers,
+        calibrated,
+        names,
+        time,
+        positions,
+        wrenches,
+    )

@@ -26,18 +26,31 @@ def own(person):
 def trial(own, marker_set, spread=0.0, noise=0.0):
     """Names, positions (frames, n, 3) and true offsets of quiet standing with feet apart."""
     rng = np.random.default_rng(11)
-    q = own.vector({'hip_adduction_r': -0.08, 'hip_adduction_l': -0.08,
-                    'subtalar_angle_r': 0.08, 'subtalar_angle_l': 0.08,
-                    'pelvis_rotation': 0.1, 'elbow_flex_r': 0.2}, own.standing())
+    q = own.vector(
+        {
+            'hip_adduction_r': -0.08,
+            'hip_adduction_l': -0.08,
+            'subtalar_angle_r': 0.08,
+            'subtalar_angle_l': 0.08,
+            'pelvis_rotation': 0.1,
+            'elbow_flex_r': 0.2,
+        },
+        own.standing(),
+    )
     book = marker_set.positions(own.parameters.lengths)
     names = tuple(book)
     local = np.array([book[name] + rng.normal(0.0, spread, 3) for name in names])
     frames = own.forward(q)
     at = [own.segments.index(marker_set.marker(name).segment) for name in names]
-    world = np.array([frames[i, :3, :3] @ p + frames[i, :3, 3]
-                      for i, p in zip(at, local, strict=True)])
-    return q, names, world + rng.normal(0.0, noise, (40, len(names), 3)), dict(
-        zip(names, local, strict=True))
+    world = np.array(
+        [frames[i, :3, :3] @ p + frames[i, :3, 3] for i, p in zip(at, local, strict=True)]
+    )
+    return (
+        q,
+        names,
+        world + rng.normal(0.0, noise, (40, len(names), 3)),
+        dict(zip(names, local, strict=True)),
+    )
 
 
 def test_lengths_are_those_of_the_person_and_not_of_the_table(person, own, marker_set):
@@ -54,8 +67,15 @@ def test_posture_of_the_trial_is_found(person, own, marker_set):
     found = calibrate(marker_set, names, positions, person)
     skeleton = Skeleton3D.of(person)
     error = np.degrees(np.abs(found.posture - q))
-    for name in ('pelvis_tilt', 'pelvis_rotation', 'hip_flexion_r', 'knee_angle_l',
-                 'ankle_angle_r', 'elbow_flex_r', 'subtalar_angle_l'):
+    for name in (
+        'pelvis_tilt',
+        'pelvis_rotation',
+        'hip_flexion_r',
+        'knee_angle_l',
+        'ankle_angle_r',
+        'elbow_flex_r',
+        'subtalar_angle_l',
+    ):
         assert error[skeleton.index(name)] < 2.0, name
 
 

@@ -26,14 +26,15 @@ def test_steps_are_those_of_scipys_first_order_hold(rate, cutoff):
     padded_in = np.concatenate([np.full(4, wave[0]), wave])
     padded_out = np.concatenate([np.full(4, wave[0]), np.zeros(len(wave))])
     for k in range(4, len(padded_out)):
-        past_in = padded_in[k - 4:k + 1][::-1]
-        padded_out[k] = feedforward @ past_in - feedback[1:] @ padded_out[k - 4:k][::-1]
+        past_in = padded_in[k - 4 : k + 1][::-1]
+        padded_out[k] = feedforward @ past_in - feedback[1:] @ padded_out[k - 4 : k][::-1]
     # At 2500 Hz the coefficients of the transfer function hold ten digits of the state's.
     assert ours == pytest.approx(padded_out[4:], abs=1e-6)
 
 
 def test_importing_the_tracker_does_not_load_scipy_signal():
     query = 'import sys, motion_tracker.core.tracker; print("scipy.signal" in sys.modules)'
-    answer = subprocess.run([sys.executable, '-c', query], check=True, capture_output=True,
-                            text=True)
+    answer = subprocess.run(
+        [sys.executable, '-c', query], check=True, capture_output=True, text=True
+    )
     assert answer.stdout.strip() == 'False'

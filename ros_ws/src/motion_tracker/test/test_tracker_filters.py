@@ -19,8 +19,9 @@ def test_two_passes_together_have_their_corner_at_the_cutoff(rate, cutoff):
     wave = np.sin(2 * np.pi * cutoff * time)
     middle = slice(len(time) // 4, 3 * len(time) // 4)
     filtered = zero_phase(wave, rate, cutoff)[middle]
-    assert filtered @ wave[middle] / (wave[middle] @ wave[middle]) == pytest.approx(HALF_POWER,
-                                                                                    abs=2e-3)
+    assert filtered @ wave[middle] / (wave[middle] @ wave[middle]) == pytest.approx(
+        HALF_POWER, abs=2e-3
+    )
 
 
 def test_zero_phase_filter_does_not_shift():
@@ -90,7 +91,7 @@ def test_derivatives_of_a_polynomial_of_fifth_order_are_exact():
 def test_a_short_gap_in_a_line_is_restored(first, length, slope):
     line = slope * np.arange(40.0)
     holed = line.copy()
-    holed[first:first + length] = np.nan
+    holed[first : first + length] = np.nan
     filled, report = fill_gaps(holed, 100.0, 0.1)
     assert filled == pytest.approx(line, abs=1e-9)
     assert (report.filled, report.remaining) == (length, 0)

@@ -8,11 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from motion_tracker.core.errors import ForcePlateError
-from motion_tracker.core.force_plates import (
-    PlateGeometry,
-    ground_reaction,
-    total_cop,
-)
+from motion_tracker.core.force_plates import PlateGeometry, ground_reaction, total_cop
 
 shear = st.floats(-100.0, 100.0)
 place = st.floats(-0.5, 0.5)
@@ -27,8 +23,15 @@ def plate(turn=0.0, height=0.05):
 
 # The first example may have to compile.
 @settings(max_examples=60, deadline=None)
-@given(x=place, y=place, fx=shear, fy=shear, fz=st.floats(50.0, 2000.0),
-       tz=st.floats(-20.0, 20.0), turn=st.floats(-3.0, 3.0))
+@given(
+    x=place,
+    y=place,
+    fx=shear,
+    fy=shear,
+    fz=st.floats(50.0, 2000.0),
+    tz=st.floats(-20.0, 20.0),
+    turn=st.floats(-3.0, 3.0),
+)
 def test_a_known_force_at_a_known_place_is_found_again(x, y, fx, fy, fz, tz, turn):
     geometry = plate(turn)
     at, force = np.array([x, y, 0.05]), np.array([fx, fy, fz])
@@ -40,8 +43,9 @@ def test_a_known_force_at_a_known_place_is_found_again(x, y, fx, fy, fz, tz, tur
 
 
 def test_below_the_threshold_a_foot_is_silent():
-    foot = ground_reaction([[1.0, 2.0, 19.9], [1.0, 2.0, 20.1]], np.ones((2, 3)),
-                           PlateGeometry('right'), 20.0)
+    foot = ground_reaction(
+        [[1.0, 2.0, 19.9], [1.0, 2.0, 20.1]], np.ones((2, 3)), PlateGeometry('right'), 20.0
+    )
     assert foot.loaded.tolist() == [False, True]
     assert np.isnan(foot.cop[0]).all()
     assert np.isfinite(foot.cop[1]).all()
@@ -50,13 +54,17 @@ def test_below_the_threshold_a_foot_is_silent():
 
 
 def both(*feet):
-    return (np.stack([foot.force for foot in feet], axis=1),
-            np.stack([foot.cop for foot in feet], axis=1))
+    return (
+        np.stack([foot.force for foot in feet], axis=1),
+        np.stack([foot.cop for foot in feet], axis=1),
+    )
 
 
 def test_total_centre_of_pressure_is_weighted_by_the_load():
-    feet = [ground_reaction([[0.0, 0.0, load]], [[0.0, -x * load, 0.0]], PlateGeometry('p'), 20.0)
-            for x, load in ((0.1, 300.0), (0.4, 100.0), (5.0, 10.0))]
+    feet = [
+        ground_reaction([[0.0, 0.0, load]], [[0.0, -x * load, 0.0]], PlateGeometry('p'), 20.0)
+        for x, load in ((0.1, 300.0), (0.4, 100.0), (5.0, 10.0))
+    ]
     assert total_cop(*both(*feet[:2]))[0] == pytest.approx([0.175, 0.0, 0.0])
     # The third foot is below the threshold.
     assert total_cop(*both(*feet[1:]))[0] == pytest.approx([0.4, 0.0, 0.0])

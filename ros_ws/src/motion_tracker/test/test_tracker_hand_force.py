@@ -25,8 +25,9 @@ def estimator():
 
 
 def test_carried_box_weighs_mass_times_gravity_and_acceleration(estimator):
-    force = estimator.estimate(None, HANDS + [0, 0, 0.5], BOX + [0, 0, 0.5],
-                               np.array([1.0, 0.0, 2.0]), 0.1, None)
+    force = estimator.estimate(
+        None, HANDS + [0, 0, 0.5], BOX + [0, 0, 0.5], np.array([1.0, 0.0, 2.0]), 0.1, None
+    )
     assert force.sum(axis=0) == pytest.approx([-12.0, 0.0, -12.0 * (G + 2.0)])
 
 
@@ -68,10 +69,18 @@ def test_a_whole_lift_has_no_step(estimator):
     for t, w, z, a, d in zip(time, load, rise, lift, away, strict=True):
         box, hands = BOX + [0, 0, z], HANDS + [0, 0, z + d]
         since = t - 3.8 if t > 3.8 else None
-        estimator.observe(-w if t < 3.8 else 0.0, hands, box, 0.0 if 0.0 in (s[0], z) else 0.1,
-                          2.0 < t < 4.2, 1e-3, 0.03)
-        force = estimator.estimate(-w if t < 3.8 else 0.0, hands, box, np.array([0, 0, a]), 0.1,
-                                   since)
+        estimator.observe(
+            -w if t < 3.8 else 0.0,
+            hands,
+            box,
+            0.0 if 0.0 in (s[0], z) else 0.1,
+            2.0 < t < 4.2,
+            1e-3,
+            0.03,
+        )
+        force = estimator.estimate(
+            -w if t < 3.8 else 0.0, hands, box, np.array([0, 0, a]), 0.1, since
+        )
         if last is not None:
             largest = max(largest, float(np.abs(force - last).max()))
         last = force
@@ -88,8 +97,10 @@ def test_samples_at_once_have_the_bits_of_samples_alone(estimator):
     hands = HANDS + rng.normal(0.0, 0.08, (20, 2, 3))
     missing, acceleration = rng.normal(-60.0, 60.0, 20), rng.normal(size=(20, 3))
     whole = estimator.estimate(missing, hands, BOX + rise, acceleration, 0.1, 0.1)
-    single = [estimator.estimate(float(m), h, b, a, 0.1, 0.1) for m, h, b, a in
-              zip(missing, hands, BOX + rise, acceleration, strict=True)]
+    single = [
+        estimator.estimate(float(m), h, b, a, 0.1, 0.1)
+        for m, h, b, a in zip(missing, hands, BOX + rise, acceleration, strict=True)
+    ]
     assert np.array_equal(whole, single)
     assert np.ptp(whole[:, :, 2].sum(axis=1)) > 50.0
 
@@ -110,9 +121,15 @@ def test_shares_stay_between_the_hands():
     assert split(np.zeros((2, 3)), BOX) == 0.5
 
 
-@pytest.mark.parametrize(('mass', 'size', 'words'), [
-    (-1.0, SIZE, 'box_mass'), (np.nan, SIZE, 'box_mass'), (1.0, (0.1, 0.1), 'box_size'),
-    (1.0, (0.1, -0.1, 0.1), 'box_size')])
+@pytest.mark.parametrize(
+    ('mass', 'size', 'words'),
+    [
+        (-1.0, SIZE, 'box_mass'),
+        (np.nan, SIZE, 'box_mass'),
+        (1.0, (0.1, 0.1), 'box_size'),
+        (1.0, (0.1, -0.1, 0.1), 'box_size'),
+    ],
+)
 def test_impossible_boxes_are_refused(mass, size, words):
     with pytest.raises(HandForceError, match=words):
         HandForceEstimator(mass, size)

@@ -65,9 +65,11 @@ def test_no_other_posture_nearby_fits_better(solver, crouch, seed):
         place = np.array([name.startswith('pelvis') for name in solver.skeleton.coordinates])
         value = float(solver.model.weights @ (distance**2).sum(axis=1))
         value += solver.settings.neutral_weight * float((q[~place] ** 2).sum())
-        for a, b, share in (('lumbar_extension', 'thorax_extension', 0.630),
-                            ('lumbar_bending', 'thorax_bending', 0.442),
-                            ('lumbar_rotation', 'thorax_rotation', 0.562)):
+        for a, b, share in (
+            ('lumbar_extension', 'thorax_extension', 0.630),
+            ('lumbar_bending', 'thorax_bending', 0.442),
+            ('lumbar_rotation', 'thorax_rotation', 0.562),
+        ):
             low, high = q[solver.skeleton.index(a)], q[solver.skeleton.index(b)]
             value += solver.settings.spine_weight * ((1 - share) * low - share * high) ** 2
         return value
@@ -136,8 +138,10 @@ def test_empty_frame_keeps_the_posture_and_says_so(solver, crouch):
 
 
 @pytest.mark.parametrize('known', [False, True], ids=['first frame', 'later frame'])
-@pytest.mark.parametrize('pair', [('LKNE', 'RKNE'), ('LANK', 'LHEE'), ('LASI', 'RASI'),
-                                  ('LELB', 'LWRA'), ('RTOE', 'RMT5')])
+@pytest.mark.parametrize(
+    'pair',
+    [('LKNE', 'RKNE'), ('LANK', 'LHEE'), ('LASI', 'RASI'), ('LELB', 'LWRA'), ('RTOE', 'RMT5')],
+)
 def test_exchanged_names_are_found_and_left_out(solver, crouch, pair, known):
     target = swapped(solver.model, solver.predict(crouch), *pair)
     solution = solver.solve(target, crouch if known else None)
@@ -151,8 +155,10 @@ def test_all_sides_exchanged_is_told_in_one_sentence(solver, crouch):
     names = solver.model.names
     target = solver.predict(crouch)
     twin = {'L': 'R', 'R': 'L'}
-    order = [names.index(twin.get(n[0], n[0]) + n[1:]) if twin.get(n[0], n[0]) + n[1:] in names
-             else i for i, n in enumerate(names)]
+    order = [
+        names.index(twin.get(n[0], n[0]) + n[1:]) if twin.get(n[0], n[0]) + n[1:] in names else i
+        for i, n in enumerate(names)
+    ]
     solution = solver.solve(target[order])
     assert solution.status is SolveStatus.TRACKER_MARKERS_SWAPPED
     assert 'left and right side are all exchanged' in solution.message
@@ -188,21 +194,31 @@ def test_input_of_the_wrong_shape_is_refused(solver):
 
 def test_markers_that_do_not_place_the_pelvis_are_refused(skeleton, solver):
     hand = [i for i, s in enumerate(solver.model.segments) if s == 'thorax'][:1]
-    few = MarkerModel(*(tuple(np.array(part)[hand]) for part in
-                        (solver.model.names, solver.model.segments)),
-                      solver.model.offsets[hand], solver.model.weights[hand])
+    few = MarkerModel(
+        *(tuple(np.array(part)[hand]) for part in (solver.model.names, solver.model.segments)),
+        solver.model.offsets[hand],
+        solver.model.weights[hand],
+    )
     with pytest.raises(InverseKinematicsError, match='pelvis'):
         InverseKinematics(skeleton, few)
 
 
 def test_spine_without_a_lumbar_marker_moves_as_the_rhythm_does(person, skeleton, solver):
-    blind = InverseKinematics(skeleton, solver.model.only(
-        [n for n, s in zip(solver.model.names, solver.model.segments, strict=True)
-         if s != 'lumbar']))
+    blind = InverseKinematics(
+        skeleton,
+        solver.model.only(
+            [
+                n
+                for n, s in zip(solver.model.names, solver.model.segments, strict=True)
+                if s != 'lumbar'
+            ]
+        ),
+    )
     q = skeleton.vector({'lumbar_extension': -0.5, 'thorax_extension': 0.0}, skeleton.standing())
     solution = blind.solve(blind.predict(q))
-    low, high = (solution.q[skeleton.index(name)]
-                 for name in ('lumbar_extension', 'thorax_extension'))
+    low, high = (
+        solution.q[skeleton.index(name)] for name in ('lumbar_extension', 'thorax_extension')
+    )
     assert low + high == pytest.approx(-0.5, abs=0.06)
     assert abs(low / (low + high) - 0.63) < 0.12
     assert 'lumbar' not in from_anthropometry(load_marker_set('opencap_lab_51'), person).segments
@@ -212,8 +228,9 @@ def test_one_frame_takes_a_fraction_of_the_time_to_the_next(solver, crouch):
     """100 Hz live with margin: 2 ms of processor time a frame, noise and motion included."""
     rng = np.random.default_rng(2)
     q = crouch
-    frames = [solver.predict(crouch + 0.003 * i) + rng.normal(0.0, 0.003, (54, 3))
-              for i in range(60)]
+    frames = [
+        solver.predict(crouch + 0.003 * i) + rng.normal(0.0, 0.003, (54, 3)) for i in range(60)
+    ]
     solver.solve(frames[0], q)
     times = []
     for frame in frames:
@@ -231,8 +248,21 @@ def test_kernel_takes_the_short_way_to_a_bound(skeleton, solver):
     segment = np.array([skeleton.segments.index(s) for s in solver.model.segments])
     none = np.zeros(40)
     q, _, _, converged, _, _ = fit(
-        tree, skeleton.standing() - 3.0, lower, upper, tree.segment_body[segment],
-        tree.segment_offset[segment] + solver.model.offsets, target, solver.model.weights, none,
-        none + 1e-6, np.zeros((0, 2), dtype=np.int64), np.zeros(0), np.zeros(0), 200, 1e-8)
+        tree,
+        skeleton.standing() - 3.0,
+        lower,
+        upper,
+        tree.segment_body[segment],
+        tree.segment_offset[segment] + solver.model.offsets,
+        target,
+        solver.model.weights,
+        none,
+        none + 1e-6,
+        np.zeros((0, 2), dtype=np.int64),
+        np.zeros(0),
+        np.zeros(0),
+        200,
+        1e-8,
+    )
     assert converged
     assert np.all((q >= lower) & (q <= upper))

@@ -32,8 +32,7 @@ def steady_push(time, rise, duration):
 
 def over_the_edge(time, rise, duration):
     """Up past the platform, slowed to a stop, and down on it by 5 cm."""
-    return (minimum_jerk(time, rise + 0.05, duration)
-            - minimum_jerk(time - duration, 0.05, 0.4))
+    return minimum_jerk(time, rise + 0.05, duration) - minimum_jerk(time - duration, 0.05, 0.4)
 
 
 def recording(path, rise, duration, noise, seed):
@@ -44,15 +43,21 @@ def recording(path, rise, duration, noise, seed):
     return time, height, 1e9 + late, 1e9 + late + duration
 
 
-@pytest.mark.parametrize(('path', 'noise', 'tolerance'), [
-    (minimum_jerk, 0.0, 0.010), (minimum_jerk, 5e-4, 0.020),
-    (over_the_edge, 0.0, 0.010), (over_the_edge, 5e-4, 0.020),
-    (steady_push, 0.0, 0.010)])
+@pytest.mark.parametrize(
+    ('path', 'noise', 'tolerance'),
+    [
+        (minimum_jerk, 0.0, 0.010),
+        (minimum_jerk, 5e-4, 0.020),
+        (over_the_edge, 0.0, 0.010),
+        (over_the_edge, 5e-4, 0.020),
+        (steady_push, 0.0, 0.010),
+    ],
+)
 @pytest.mark.parametrize(('rise', 'duration'), [(0.9, 1.2), (0.8, 1.5), (1.0, 1.9)])
 def test_start_and_end_are_found(path, noise, tolerance, rise, duration):
     for seed in range(5 if noise else 1):
         time, height, start, end = recording(path, rise, duration, noise, seed)
-        (first, last), = pair_lifts(detect_lifts(time, height))
+        ((first, last),) = pair_lifts(detect_lifts(time, height))
         assert abs(first.time - start) <= tolerance, seed
         assert abs(last.time - end) <= tolerance, seed
         assert first.height == pytest.approx(0.1, abs=2e-3)
@@ -77,8 +82,9 @@ def test_long_recordings_forget_their_past_without_changing_events():
     time = np.concatenate([single + 20.0 * k for k in range(6)])
     heights = np.tile(height, 6)
     detector = LiftEventDetector(history=5.0)
-    live = [e for t, z in zip(time, heights, strict=True)
-            for e in detector.push(float(t), float(z))]
+    live = [
+        e for t, z in zip(time, heights, strict=True) for e in detector.push(float(t), float(z))
+    ]
     live += detector.finish()
     assert live == detect_lifts(time, heights)
     assert len(pair_lifts(live)) == 6
@@ -119,8 +125,11 @@ def test_turning_point_without_rest_is_the_start():
 def test_second_local_maximum_does_not_count():
     """Thesis 4.3: the first local maximum ends the lift, a later higher one does not."""
     time = np.arange(600) / RATE
-    height = (minimum_jerk(time - 1.0, 0.6, 1.0) - minimum_jerk(time - 2.0, 0.1, 0.5)
-              + minimum_jerk(time - 2.5, 0.02, 0.5))
+    height = (
+        minimum_jerk(time - 1.0, 0.6, 1.0)
+        - minimum_jerk(time - 2.0, 0.1, 0.5)
+        + minimum_jerk(time - 2.5, 0.02, 0.5)
+    )
     events = detect_lifts(time, height)
     assert events[1].time == pytest.approx(2.0, abs=0.01)
     assert len(events) == 2

@@ -54,7 +54,7 @@ def test_lifts_are_built_step_by_step_from_the_frames_round_them(records, status
     records.begin_builds(4.6, 10.0, None, status)
     done = [records.build(1) for _ in range(6)]
     assert [len(some) for some in done] == [0, 0, 1, 0, 0, 1]
-    (name, stamps, support), = done[2]
+    ((name, stamps, support),) = done[2]
     assert (name, support) == ('lift_007', 0.3)
     assert stamps == pytest.approx([0.1 * i for i in range(5, 26)])
     assert done[5][0][2] is None

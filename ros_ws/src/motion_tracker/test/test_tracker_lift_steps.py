@@ -21,13 +21,17 @@ def samples(lift, plates):
 def test_a_measured_lift_comes_while_frames_go_on(person, marker_set, lift, solver, plates):
     """A step with each frame after the margin, whether other samples come between or not."""
     now = 0.0
-    tracker = MotionTracker(person, marker_set, settings=TrackerSettings(wait=0.1),
-                            clock=lambda: now)
+    tracker = MotionTracker(
+        person, marker_set, settings=TrackerSettings(wait=0.1), clock=lambda: now
+    )
     known, frames = None, 0
     for kind, stamp, *values in samples(lift, plates):
         now = stamp
-        outputs = (tracker.push_markers(stamp, solver.model.names, *values) if kind == 'markers'
-                   else tracker.push_wrench(kind, stamp, *values))
+        outputs = (
+            tracker.push_markers(stamp, solver.model.names, *values)
+            if kind == 'markers'
+            else tracker.push_wrench(kind, stamp, *values)
+        )
         for output in outputs:
             if isinstance(output, DetectedEvent) and output.event.phase is LiftPhase.END:
                 known = output.event.time

@@ -32,8 +32,11 @@ def frames(person, marker_set, lift, solver):
                 tracker.push_wrench(side, *wrench)
         for message in lift[1] if box else []:
             tracker.push_box(*message[1:])
-        outputs = [output for message in lift[0][:40] for output in tracker.push_markers(
-            message[1], solver.model.names, message[2])] + tracker.flush()
+        outputs = [
+            output
+            for message in lift[0][:40]
+            for output in tracker.push_markers(message[1], solver.model.names, message[2])
+        ] + tracker.flush()
         found += [output for output in outputs if isinstance(output, TrackedFrame)]
     return found
 
@@ -49,8 +52,9 @@ def assert_same(written, message):
     """Check that bytes hold a message; NaN is equal to NaN."""
     assert (written is None) is (message is None)
     if message is not None:
-        np.testing.assert_equal(fields(deserialize_message(written, type(message))),
-                                fields(message))
+        np.testing.assert_equal(
+            fields(deserialize_message(written, type(message))), fields(message)
+        )
 
 
 def test_written_samples_are_those_of_the_conversions(frames):
@@ -65,8 +69,10 @@ def test_written_samples_are_those_of_the_conversions(frames):
         for side in (None, 0, 1):
             assert_same(writer.cop(frame, side), conversions.cop_to_msg(frame, side))
     assert 0 < silent < len(frames)
-    assert {frame.status for frame in frames} == {SolveStatus.OK,
-                                                  SolveStatus.TRACKER_NO_GROUND_FORCE}
+    assert {frame.status for frame in frames} == {
+        SolveStatus.OK,
+        SolveStatus.TRACKER_NO_GROUND_FORCE,
+    }
 
 
 def test_another_delay_is_another_layout(frames):
@@ -84,7 +90,9 @@ def test_recordings_of_written_samples_can_be_read(frames):
     store = typesys.get_typestore(typesys.Stores.ROS2_JAZZY)
     writer = LiveWriter()
     (frame,) = [frame for frame in frames if frame.status == SolveStatus.OK][:1]
-    for data, name in ((writer.joint_state(frame), 'sensor_msgs/msg/JointState'),
-                       (writer.ground_reaction(frame), 'geometry_msgs/msg/WrenchStamped'),
-                       (writer.cop(frame), 'geometry_msgs/msg/PointStamped')):
+    for data, name in (
+        (writer.joint_state(frame), 'sensor_msgs/msg/JointState'),
+        (writer.ground_reaction(frame), 'geometry_msgs/msg/WrenchStamped'),
+        (writer.cop(frame), 'geometry_msgs/msg/PointStamped'),
+    ):
         assert store.deserialize_cdr(data, name).header.frame_id == 'world'

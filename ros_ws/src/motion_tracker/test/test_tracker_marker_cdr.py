@@ -39,8 +39,9 @@ def assert_read(reader, message):
     np.testing.assert_array_equal(positions, expected[2])
 
 
-@given(st.text('abc_/é', max_size=9),
-       st.lists(st.lists(MARKER, max_size=5), min_size=1, max_size=5))
+@given(
+    st.text('abc_/é', max_size=9), st.lists(st.lists(MARKER, max_size=5), min_size=1, max_size=5)
+)
 def test_any_frames_in_a_row_are_read_like_their_messages(name, frames):
     """One reader for all: what it remembers of one frame must not get into another."""
     reader = MarkerReader()

@@ -36,8 +36,10 @@ def test_every_marker_sits_on_a_segment_of_the_skeleton_and_names_its_source(nam
     for marker in load_marker_set(name).markers:
         assert marker.segment in segments
     rows = (DATA / 'marker_sets' / f'{name}.csv').read_text(encoding='utf-8').splitlines()[1:]
-    assert all('placement' in row and ('position' in row or 'ANSUR' in row or 'de Leva' in row)
-               for row in rows)
+    assert all(
+        'placement' in row and ('position' in row or 'ANSUR' in row or 'de Leva' in row)
+        for row in rows
+    )
 
 
 def test_joint_centres_of_the_marker_set_are_those_of_the_skeleton(person, skeleton, marker_set):
@@ -48,8 +50,9 @@ def test_joint_centres_of_the_marker_set_are_those_of_the_skeleton(person, skele
         frame = frames[skeleton.segments.index(marker_set.marker(name).segment)]
         markers[name] = frame[:3, :3] @ local + frame[:3, 3]
     points = skeleton.points(np.zeros(len(skeleton.coordinates)))
-    definitions = [d for d in load_joint_definitions('plug_in_gait_58')
-                   if not d.joint.startswith('shoulder')]
+    definitions = [
+        d for d in load_joint_definitions('plug_in_gait_58') if not d.joint.startswith('shoulder')
+    ]
     for joint, centre in joint_centres(tuple(definitions), markers, {}).items():
         if joint.startswith('hip'):
             # Harrington's regression puts the hips wider than the model's: sagittal plane only.
@@ -64,7 +67,7 @@ def test_positions_scale_with_the_lengths_they_name(marker_set):
     scaled = marker_set.positions(segment_lengths(small)[0])
     for marker in marker_set.markers:
         assert reference[marker.name] == pytest.approx(marker.position)
-    ratio = (segment_lengths(small)[0]['thigh'] / segment_lengths(REFERENCE_SUBJECT)[0]['thigh'])
+    ratio = segment_lengths(small)[0]['thigh'] / segment_lengths(REFERENCE_SUBJECT)[0]['thigh']
     assert scaled['LKNE'] == pytest.approx(reference['LKNE'] * ratio)
 
 
@@ -78,23 +81,34 @@ def test_left_and_right_are_mirrored_where_the_set_does_not_say_otherwise(marker
         assert np.array(twin.position) == pytest.approx(np.array(marker.position) * [1, -1, 1])
 
 
-@pytest.mark.parametrize(('name', 'mirrored'), [
-    ('LKNE', 'RKNE'), ('RKNE', 'LKNE'), ('r_knee', 'L_knee'), ('L.ASIS', 'r.ASIS'), ('C7', None),
-    ('RBAK', None)])
+@pytest.mark.parametrize(
+    ('name', 'mirrored'),
+    [
+        ('LKNE', 'RKNE'),
+        ('RKNE', 'LKNE'),
+        ('r_knee', 'L_knee'),
+        ('L.ASIS', 'r.ASIS'),
+        ('C7', None),
+        ('RBAK', None),
+    ],
+)
 def test_mirror_names(name, mirrored):
     names = ('LKNE', 'RKNE', 'L_knee', 'r_knee', 'L.ASIS', 'r.ASIS', 'C7', 'RBAK')
     assert mirror_name(name, names) == mirrored
 
 
-@pytest.mark.parametrize(('row', 'words'), [
-    ('A,pelvis,0.1,0,x,thigh,1,yes,d,s', 'line 2'),
-    ('A,pelvis,0.1,0,,thigh,1,yes,d,s', 'incomplete'),
-    ('A,pelvis,0.1,0,0,thihg,1,yes,d,s', "'thihg' is no segment length"),
-    ('A,pelvis,0.1,0,0,thigh,-1,yes,d,s', 'weight'),
-    ('A,pelvis,0.1,0,0,thigh,1,maybe,d,s', 'maybe'),
-    ('A,pelvis,0.1,0,0,thigh shank,1,yes,d,s', 'neither one nor'),
-    ('A,pelvis,0,0,0,thigh,1,yes,d,s\nA,pelvis,0,0,0,thigh,1,yes,d,s', "'A' occurs 2"),
-])
+@pytest.mark.parametrize(
+    ('row', 'words'),
+    [
+        ('A,pelvis,0.1,0,x,thigh,1,yes,d,s', 'line 2'),
+        ('A,pelvis,0.1,0,,thigh,1,yes,d,s', 'incomplete'),
+        ('A,pelvis,0.1,0,0,thihg,1,yes,d,s', "'thihg' is no segment length"),
+        ('A,pelvis,0.1,0,0,thigh,-1,yes,d,s', 'weight'),
+        ('A,pelvis,0.1,0,0,thigh,1,maybe,d,s', 'maybe'),
+        ('A,pelvis,0.1,0,0,thigh shank,1,yes,d,s', 'neither one nor'),
+        ('A,pelvis,0,0,0,thigh,1,yes,d,s\nA,pelvis,0,0,0,thigh,1,yes,d,s', "'A' occurs 2"),
+    ],
+)
 def test_damaged_files_are_refused_by_file_line_and_field(tmp_path, row, words):
     path = tmp_path / 'own_set.csv'
     path.write_text(f'{HEADER}\n{row}\n', encoding='utf-8')

@@ -20,8 +20,9 @@ def watched(watch, vertical, need=None, box_mass=0.0):
     return [check for check in said if check is not None]
 
 
-@pytest.mark.parametrize(('mass', 'ok'), [(70.0, True), (72.9, True), (66.0, False),
-                                          (74.0, False)])
+@pytest.mark.parametrize(
+    ('mass', 'ok'), [(70.0, True), (72.9, True), (66.0, False), (74.0, False)]
+)
 def test_weight_off_by_more_than_five_percent_is_told(mass, ok):
     rng = np.random.default_rng(4)
     watch = MassWatch(70.0, 0.05)

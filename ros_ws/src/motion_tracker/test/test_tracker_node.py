@@ -40,24 +40,32 @@ from motion_tracker.motion_tracker_node import MotionTrackerNode  # noqa: E402
 BAG = Path(__file__).resolve().parents[4] / 'bags' / 'symmetric_7kg'
 PATIENCE = 60.0
 INPUTS = {
-    'subject': (Subject, qos.LATCHED), 'task': (Task, qos.LATCHED),
-    'markers': (Markers, qos.FRAMES), 'box/pose': (PoseStamped, qos.FRAMES),
+    'subject': (Subject, qos.LATCHED),
+    'task': (Task, qos.LATCHED),
+    'markers': (Markers, qos.FRAMES),
+    'box/pose': (PoseStamped, qos.FRAMES),
     'force_plates/right/wrench': (WrenchStamped, qos.PLATES),
-    'force_plates/left/wrench': (WrenchStamped, qos.PLATES)}
+    'force_plates/left/wrench': (WrenchStamped, qos.PLATES),
+}
 OUTPUTS = {
-    'joint_states': (JointState, qos.FRAMES), 'body_motion': (BodyMotion, qos.FRAMES),
-    'lift_event': (LiftEvent, qos.RESULTS), 'measured_lift': (MeasuredLift, qos.RESULTS),
+    'joint_states': (JointState, qos.FRAMES),
+    'body_motion': (BodyMotion, qos.FRAMES),
+    'lift_event': (LiftEvent, qos.RESULTS),
+    'measured_lift': (MeasuredLift, qos.RESULTS),
     'force_plates/right/cop': (PointStamped, qos.FRAMES),
     'ground_reaction/wrench': (WrenchStamped, qos.FRAMES),
-    'ground_reaction/cop': (PointStamped, qos.FRAMES)}
+    'ground_reaction/cop': (PointStamped, qos.FRAMES),
+}
 
 
 @pytest.fixture(scope='module')
 def recording():
     """Topics and messages of a simulated lift, in order."""
     with reader.BagReader(BAG) as bag:
-        return [(topic.strip('/'), deserialize_message(data, INPUTS[topic.strip('/')][0]))
-                for topic, _, data in bag.raw_messages()]
+        return [
+            (topic.strip('/'), deserialize_message(data, INPUTS[topic.strip('/')][0]))
+            for topic, _, data in bag.raw_messages()
+        ]
 
 
 class Station:
@@ -74,8 +82,10 @@ class Station:
         self.received = {topic: [] for topic in OUTPUTS}
         for topic, (kind, profile) in OUTPUTS.items():
             self.client.create_subscription(kind, topic, self.received[topic].append, profile)
-        self.publishers = {topic: self.client.create_publisher(kind, topic, profile)
-                           for topic, (kind, profile) in INPUTS.items()}
+        self.publishers = {
+            topic: self.client.create_publisher(kind, topic, profile)
+            for topic, (kind, profile) in INPUTS.items()
+        }
 
     def until(self, condition, what):
         """Spin until a condition holds; fail by name when patience is over."""
@@ -120,8 +130,12 @@ def offline(recording, values):
     """Return the outputs of the core on the same messages."""
     messages = dict(recording[:2])
     subject = messages['subject']
-    tracker = tracker_from(values, subject_from_msg(subject), subject.marker_set,
-                           *conversions.task_from_msg(messages['task']))
+    tracker = tracker_from(
+        values,
+        subject_from_msg(subject),
+        subject.marker_set,
+        *conversions.task_from_msg(messages['task']),
+    )
     outputs = []
     for topic, message in recording[2:]:
         if topic == 'markers':
@@ -129,8 +143,9 @@ def offline(recording, values):
         elif topic == 'box/pose':
             outputs += tracker.push_box(*conversions.box_from_msg(message))
         else:
-            outputs += tracker.push_wrench(topic.split('/')[1],
-                                           *conversions.wrench_from_msg(message))
+            outputs += tracker.push_wrench(
+                topic.split('/')[1], *conversions.wrench_from_msg(message)
+            )
     return outputs + tracker.flush()
 
 
@@ -142,8 +157,13 @@ def test_a_recording_over_topics_gives_what_the_core_gives(station, recording):
         station.executor.spin_once(timeout_sec=0.0)
     station.until(lambda: station.node.counts['markers'] == markers, 'all marker frames')
     plates = sum(topic.endswith('wrench') for topic, _ in recording)
-    station.until(lambda: sum(n for topic, n in station.node.counts.items()
-                              if topic.endswith('wrench')) == plates, 'all plate samples')
+    station.until(
+        lambda: (
+            sum(n for topic, n in station.node.counts.items() if topic.endswith('wrench'))
+            == plates
+        ),
+        'all plate samples',
+    )
     answer = station.call(Trigger, 'flush', Trigger.Request())
     assert answer.success
     assert answer.message == '1 lifts'
@@ -155,8 +175,9 @@ def test_a_recording_over_topics_gives_what_the_core_gives(station, recording):
     received = lift_from_msg(station.received['measured_lift'][0])
     assert received.lift_id == lift.lift_id == 'lift_001'
     for name in ('position', 'velocity', 'acceleration', 'ground_force', 'cop', 'hand_force'):
-        assert np.array_equal(getattr(received.motion, name), getattr(lift.motion, name),
-                              equal_nan=True), name
+        assert np.array_equal(
+            getattr(received.motion, name), getattr(lift.motion, name), equal_nan=True
+        ), name
     for message, frame in zip(station.received['body_motion'], frames, strict=True):
         assert np.array_equal(message.position, frame.motion.position[0])
         assert message.status[0] == frame.status
@@ -184,8 +205,10 @@ def test_bad_frames_are_reported_and_the_node_goes_on(station, recording):
     station.bring_up()
     for topic, message in recording[:2]:
         station.publishers[topic].publish(message)
-    station.until(lambda: station.node.counts['task'] == 1 == station.node.counts['subject'],
-                  'person and task')
+    station.until(
+        lambda: station.node.counts['task'] == 1 == station.node.counts['subject'],
+        'person and task',
+    )
     frame = next(message for topic, message in recording if topic == 'markers')
     for marker in frame.markers:
         marker.translation.x *= 1000.0

@@ -47,10 +47,17 @@ def shuffled(seed, *streams):
     """Another interleaving: every stream in its own order, up to half a second ahead."""
     rng = np.random.default_rng(seed)
     ahead = rng.uniform(0.0, 0.5, len(streams))
-    return [message for _, message in sorted(
-        ((m[1] - lead + rng.uniform(0.0, 1e-9), m)
-         for stream, lead in zip(streams, ahead, strict=True) for m in stream),
-        key=lambda pair: pair[0])]
+    return [
+        message
+        for _, message in sorted(
+            (
+                (m[1] - lead + rng.uniform(0.0, 1e-9), m)
+                for stream, lead in zip(streams, ahead, strict=True)
+                for m in stream
+            ),
+            key=lambda pair: pair[0],
+        )
+    ]
 
 
 @pytest.fixture
@@ -66,8 +73,7 @@ def sides(lift):
 
 @pytest.fixture(scope='module')
 def outputs(lift, person, marker_set, solver):
-    return feed(MotionTracker(person, marker_set, MASS, SIZE), in_order(*lift),
-                solver.model.names)
+    return feed(MotionTracker(person, marker_set, MASS, SIZE), in_order(*lift), solver.model.names)
 
 
 def of(kind, outputs):
@@ -111,18 +117,31 @@ def test_live_and_lift_agree_where_both_see_the_same_instant(outputs):
 
 
 @pytest.mark.parametrize('seed', [0, 1, 2])
-def test_results_do_not_depend_on_the_order_of_arrival(outputs, tracker, lift, sides, solver,
-                                                       seed):
+def test_results_do_not_depend_on_the_order_of_arrival(
+    outputs, tracker, lift, sides, solver, seed
+):
     """Same input, same bits, whichever stream is ahead."""
     other = feed(tracker, shuffled(seed, lift[0], lift[1], *sides), solver.model.names)
     for kind in (TrackedFrame, MeasuredLift):
         for a, b in zip(of(kind, outputs), of(kind, other), strict=True):
             first = a.motion if kind is TrackedFrame else a.lift.motion
             second = b.motion if kind is TrackedFrame else b.lift.motion
-            for name in ('time', 'position', 'velocity', 'acceleration', 'points', 'frames',
-                         'ground_force', 'cop', 'free_moment', 'hand_force', 'box_position'):
-                assert np.array_equal(getattr(first, name), getattr(second, name),
-                                      equal_nan=True), name
+            for name in (
+                'time',
+                'position',
+                'velocity',
+                'acceleration',
+                'points',
+                'frames',
+                'ground_force',
+                'cop',
+                'free_moment',
+                'hand_force',
+                'box_position',
+            ):
+                assert np.array_equal(
+                    getattr(first, name), getattr(second, name), equal_nan=True
+                ), name
     assert of(DetectedEvent, outputs) == of(DetectedEvent, other)
 
 
@@ -195,8 +214,9 @@ def test_nan_markers_and_samples_are_done_without(tracker, lift, solver):
         holed = positions.copy()
         holed[names.index('LKNE')] = np.nan
         markers.append((kind, stamp, holed))
-    wrench = [(m[0], m[1], m[2] * (np.nan if i == 100 else 1.0), m[3])
-              for i, m in enumerate(lift[2])]
+    wrench = [
+        (m[0], m[1], m[2] * (np.nan if i == 100 else 1.0), m[3]) for i, m in enumerate(lift[2])
+    ]
     outputs = feed(tracker, in_order(markers, lift[1], wrench), names)
     (measured,) = of(MeasuredLift, outputs)
     assert measured.lift.report.ok
@@ -222,12 +242,14 @@ def test_unknown_and_doubled_markers_are_told(tracker, lift, solver):
 
 
 def heavier(samples, factor):
-    return [(side, stamp, factor * force, factor * moment)
-            for side, stamp, force, moment in samples]
+    return [
+        (side, stamp, factor * force, factor * moment) for side, stamp, force, moment in samples
+    ]
 
 
-def test_masses_in_doubt_are_a_status_until_the_plates_agree_again(marker_set, lift, solver,
-                                                                   person):
+def test_masses_in_doubt_are_a_status_until_the_plates_agree_again(
+    marker_set, lift, solver, person
+):
     """The plates carry person and box: without a task they weigh too much, at the end not."""
     right = (person.mass + MASS) / person.mass
     plates = [m for m in lift[2] if m[1] < START + 2.2]
@@ -252,8 +274,9 @@ def test_masses_in_doubt_are_a_status_until_the_plates_agree_again(marker_set, l
     assert 'subject.mass: 72.0 kg, deviation +13.' in measured.lift.report.message
 
 
-def test_box_that_is_heavier_than_its_task_says_is_found_while_it_is_held(marker_set, lift,
-                                                                          solver, person):
+def test_box_that_is_heavier_than_its_task_says_is_found_while_it_is_held(
+    marker_set, lift, solver, person
+):
     heavy = MASS + 0.1 * (person.mass + MASS)
     tracker = MotionTracker(person, marker_set, heavy, SIZE)
     outputs = feed(tracker, in_order(*lift), solver.model.names)
@@ -269,16 +292,25 @@ def moving_start(skeleton, solver, crouch, speed):
     rng = np.random.default_rng(7)
     up = np.array([0.0, 0.0, 1.0])
     places = solver.predict(crouch)
-    return [('markers', START + t, places + speed * t * up + rng.normal(0.0, 5e-4, (54, 3)))
-            for t in np.arange(100) / 100.0]
+    return [
+        ('markers', START + t, places + speed * t * up + rng.normal(0.0, 5e-4, (54, 3)))
+        for t in np.arange(100) / 100.0
+    ]
 
 
 @pytest.mark.parametrize(('speed', 'settling'), [(0.0, 0), (0.3, 48)])
 def test_filters_settle_where_a_recording_begins_in_motion(
-        marker_set, lift, solver, skeleton, crouch, person, speed, settling):
+    marker_set, lift, solver, skeleton, crouch, person, speed, settling
+):
     tracker = MotionTracker(person, marker_set)
-    frames = of(TrackedFrame, feed(tracker, in_order(
-        moving_start(skeleton, solver, crouch, speed), lift[2]), solver.model.names))
+    frames = of(
+        TrackedFrame,
+        feed(
+            tracker,
+            in_order(moving_start(skeleton, solver, crouch, speed), lift[2]),
+            solver.model.names,
+        ),
+    )
     marked = [f for f in frames if f.status is SolveStatus.TRACKER_FILTER_SETTLING]
     silent = [f for f in frames if f.status is SolveStatus.TRACKER_NO_GROUND_FORCE]
     assert len(marked) + len(silent) == max(settling, len(silent))
@@ -310,7 +342,8 @@ def pushed(tracker, markers, names, clock, rate):
 
 @pytest.mark.parametrize(('rate', 'frames'), [(0.25, 50), (1.0, 200), (10.0, None)])
 def test_a_plate_that_never_comes_is_given_up_by_the_clock(
-        marker_set, lift, solver, person, rate, frames):
+    marker_set, lift, solver, person, rate, frames
+):
     clock = Clock()
     tracker = MotionTracker(person, marker_set, clock=clock)
     outputs = pushed(tracker, lift[0], solver.model.names, clock, rate)
@@ -320,12 +353,15 @@ def test_a_plate_that_never_comes_is_given_up_by_the_clock(
         return
     assert first == pytest.approx(frames, abs=1)
     said = [n.text for n in of(Notice, outputs[first])]
-    assert said == [f'{side} plate: no samples at all at {START:.3f} s; going on without'
-                    for side in ('right', 'left')]
+    assert said == [
+        f'{side} plate: no samples at all at {START:.3f} s; going on without'
+        for side in ('right', 'left')
+    ]
 
 
 def test_a_late_plate_is_waited_for_at_ten_times_real_time_and_through_a_pause(
-        marker_set, lift, sides, solver, person):
+    marker_set, lift, sides, solver, person
+):
     """The left plate comes 2.5 s of stamps late, 0.25 s by the clock, and after a pause."""
     clock = Clock()
     names = solver.model.names
@@ -360,21 +396,33 @@ def test_giving_up_early_or_at_the_end_gives_the_same(marker_set, lift, sides, s
         outputs += feed_one(live, message, names)
     before_end = len(of(TrackedFrame, outputs))
     outputs += live.flush()
-    reference = feed(MotionTracker(person, marker_set, MASS, SIZE),
-                     in_order(lift[0], plates, box), names)
+    reference = feed(
+        MotionTracker(person, marker_set, MASS, SIZE), in_order(lift[0], plates, box), names
+    )
     assert before_end > 200
-    assert [(e.lift_id, e.event.time, e.detected_from) for e in of(DetectedEvent, outputs)] == \
-        [(e.lift_id, e.event.time, e.detected_from) for e in of(DetectedEvent, reference)]
+    assert [(e.lift_id, e.event.time, e.detected_from) for e in of(DetectedEvent, outputs)] == [
+        (e.lift_id, e.event.time, e.detected_from) for e in of(DetectedEvent, reference)
+    ]
     for one, other in zip(of(TrackedFrame, outputs), of(TrackedFrame, reference), strict=True):
         assert np.array_equal(one.motion.ground_force, other.motion.ground_force)
         assert one.status is other.status
 
 
 def test_several_recordings_count_on(person, marker_set, lift, solver):
-    values = {'marker_set': '', 'motion_cutoff': 6.0, 'plate_cutoff': 25.0,
-              'force_threshold': 20.0, 'plate_surface_height': 0.0, 'wait': 2.0,
-              'longest_gap': 0.1, 'margin': 0.5, 'mass_tolerance': 0.05, 'minimum_rise': 0.05,
-              'minimum_body_rise': 0.03, 'rest_speed': 0.03}
+    values = {
+        'marker_set': '',
+        'motion_cutoff': 6.0,
+        'plate_cutoff': 25.0,
+        'force_threshold': 20.0,
+        'plate_surface_height': 0.0,
+        'wait': 2.0,
+        'longest_gap': 0.1,
+        'margin': 0.5,
+        'mass_tolerance': 0.05,
+        'minimum_rise': 0.05,
+        'minimum_body_rise': 0.03,
+        'rest_speed': 0.03,
+    }
     second = tracker_from(values, person, marker_set.name, MASS, SIZE, first_lift=5)
     outputs = feed(second, in_order(*lift), solver.model.names)
     assert {e.lift_id for e in of(DetectedEvent, outputs)} == {'lift_005'}

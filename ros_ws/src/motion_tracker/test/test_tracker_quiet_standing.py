@@ -7,11 +7,7 @@ import pytest
 
 from human_model import compiled
 from motion_tracker.core.errors import TrackerError
-from motion_tracker.core.quiet_standing import (
-    coordinates_of,
-    find_quiet_standing,
-    missing_moment,
-)
+from motion_tracker.core.quiet_standing import coordinates_of, find_quiet_standing, missing_moment
 
 RATE = 100.0
 TIME = np.arange(0.0, 3.0, 1.0 / RATE)
@@ -20,8 +16,12 @@ SWAY = 2.0 * np.pi * 0.4
 
 def swaying(skeleton, depth=0.0):
     """Return coordinates of a body that sways about its hips by 1 degree, in a squat if deep."""
-    values = {'hip_flexion_r': depth, 'hip_flexion_l': depth, 'knee_angle_r': depth,
-              'knee_angle_l': depth}
+    values = {
+        'hip_flexion_r': depth,
+        'hip_flexion_l': depth,
+        'knee_angle_r': depth,
+        'knee_angle_l': depth,
+    }
     q = np.tile(skeleton.vector(values, skeleton.standing()), (len(TIME), 1))
     q[:, skeleton.index('pelvis_tilt')] += np.radians(1.0) * np.sin(SWAY * TIME)
     return q
@@ -36,8 +36,9 @@ def ground(skeleton, q):
     forces, moments = [], []
     nothing = np.zeros((len(skeleton.segments), 6))
     for row in zip(q, rate, acceleration, strict=True):
-        tau = compiled.newton_euler(skeleton.tree, *(a.copy() for a in row), nothing,
-                                    compiled.GRAVITY)
+        tau = compiled.newton_euler(
+            skeleton.tree, *(a.copy() for a in row), nothing, compiled.GRAVITY
+        )
         _, origin, axis = compiled.body_frames(skeleton.tree, row[0].copy())
         force = np.array([tau[0], -tau[2], tau[1]])
         forces.append(force)
@@ -84,15 +85,15 @@ def test_squatting_and_carrying_is_not_quiet_standing(skeleton, depth, load):
 
 def test_real_squats_have_pauses(squats):
     """Of 13.5 s some 3 s are quiet; the same is missing in each pause within 4 mm."""
-    skeleton, q = coordinates_of(
-        squats.subject, squats.marker_set, squats.names, squats.markers
+    skeleton, q = coordinates_of(squats.subject, squats.marker_set, squats.names, squats.markers)
+    force, moment = (
+        np.sum([parts[k] for parts in squats.wrenches.values()], axis=0) for k in (0, 1)
     )
-    force, moment = (np.sum([parts[k] for parts in squats.wrenches.values()], axis=0)
-                     for k in (0, 1))
     # The mass entered there is 4 % above what the plates carry.
     scale = skeleton.total_mass / 60.1
     standing = find_quiet_standing(skeleton, RATE, q, scale * force)
     assert 2.0 < len(standing.frames) / RATE < 4.0
-    missing = missing_moment(skeleton, standing, scale * force[standing.frames],
-                             scale * moment[standing.frames])
+    missing = missing_moment(
+        skeleton, standing, scale * force[standing.frames], scale * moment[standing.frames]
+    )
     assert (missing[:, :2] / (skeleton.total_mass * compiled.GRAVITY)).std(axis=0).max() < 4e-3

@@ -16,9 +16,23 @@ from motion_tracker.core.tracker import MotionTracker
 reader = pytest.importorskip('lifting_bringup.bags.reader', reason='rosbags is not installed')
 
 TASKS = ('symmetric_7kg', 'symmetric_12kg', 'symmetric_max', 'asymmetric_7kg')
-SAGITTAL = ('pelvis_tilt', 'lumbar_extension', 'thorax_extension', *(
-    f'{joint}_{side}' for side in 'rl' for joint in (
-        'arm_flex', 'elbow_flex', 'hip_flexion', 'knee_angle', 'ankle_angle', 'mtp_angle')))
+SAGITTAL = (
+    'pelvis_tilt',
+    'lumbar_extension',
+    'thorax_extension',
+    *(
+        f'{joint}_{side}'
+        for side in 'rl'
+        for joint in (
+            'arm_flex',
+            'elbow_flex',
+            'hip_flexion',
+            'knee_angle',
+            'ankle_angle',
+            'mtp_angle',
+        )
+    ),
+)
 
 Run = namedtuple('Run', 'truth time events lift frames')
 
@@ -34,10 +48,19 @@ def vector(message):
 def subject_of(message):
     lengths = dict(zip(message.segment_length_names, message.segment_lengths, strict=True))
     offsets = np.array(message.marker_offsets).reshape(-1, 3)
-    calibration = Calibration(message.marker_names, message.marker_segments, offsets, lengths,
-                              message.calibration_rms)
-    return Subject(message.pseudonym, 'male', message.mass, message.stature, message.age,
-                   message.strength_z, lengths, calibration)
+    calibration = Calibration(
+        message.marker_names, message.marker_segments, offsets, lengths, message.calibration_rms
+    )
+    return Subject(
+        message.pseudonym,
+        'male',
+        message.mass,
+        message.stature,
+        message.age,
+        message.strength_z,
+        lengths,
+        calibration,
+    )
 
 
 @pytest.fixture(scope='module', params=TASKS)
@@ -52,25 +75,39 @@ def run(request):
             elif name == 'task':
                 task = message
             if tracker is None and subject is not None and task is not None:
-                tracker = MotionTracker(subject_of(subject), load_marker_set(subject.marker_set),
-                                        task.box_mass, task.box_size)
+                tracker = MotionTracker(
+                    subject_of(subject),
+                    load_marker_set(subject.marker_set),
+                    task.box_mass,
+                    task.box_size,
+                )
             if name == 'markers':
                 outputs += tracker.push_markers(
-                    seconds(message.header.stamp), [m.marker_name for m in message.markers],
-                    [vector(m.translation) for m in message.markers])
+                    seconds(message.header.stamp),
+                    [m.marker_name for m in message.markers],
+                    [vector(m.translation) for m in message.markers],
+                )
             elif name == 'box/pose':
-                outputs += tracker.push_box(seconds(message.header.stamp),
-                                            vector(message.pose.position))
+                outputs += tracker.push_box(
+                    seconds(message.header.stamp), vector(message.pose.position)
+                )
             elif name.endswith('wrench'):
                 outputs += tracker.push_wrench(
-                    name.split('/')[-2], seconds(message.header.stamp),
-                    vector(message.wrench.force), vector(message.wrench.torque))
+                    name.split('/')[-2],
+                    seconds(message.header.stamp),
+                    vector(message.wrench.force),
+                    vector(message.wrench.torque),
+                )
     outputs += tracker.flush()
     truth = np.load(folder / 'truth.npz')
     (lift,) = [o for o in outputs if isinstance(o, MeasuredLift)]
-    return Run(truth, truth['time'] + 1e-9 * float(truth['start_time_ns']),
-               [o for o in outputs if isinstance(o, DetectedEvent)], lift,
-               [o for o in outputs if isinstance(o, TrackedFrame)])
+    return Run(
+        truth,
+        truth['time'] + 1e-9 * float(truth['start_time_ns']),
+        [o for o in outputs if isinstance(o, DetectedEvent)],
+        lift,
+        [o for o in outputs if isinstance(o, TrackedFrame)],
+    )
 
 
 def at(run, times, name):

@@ -11,8 +11,10 @@ from motion_tracker.core.calibration import calibrate
 from motion_tracker.core.marker_set import available, load_marker_set
 from motion_tracker.core.segment_measures import measured_lengths
 
-FRONT_AND_BACK = {'plug_in_gait_58': (('RASI', 'LASI'), ('RPSI', 'LPSI')),
-                  'opencap_lab_51': (('r.ASIS', 'L.ASIS'), ('r.PSIS', 'L.PSIS'))}
+FRONT_AND_BACK = {
+    'plug_in_gait_58': (('RASI', 'LASI'), ('RPSI', 'LPSI')),
+    'opencap_lab_51': (('r.ASIS', 'L.ASIS'), ('r.PSIS', 'L.PSIS')),
+}
 
 
 def stretched(markers, marker_set, by):
@@ -52,23 +54,29 @@ def standing(person, marker_set, by):
     markers = stretched(marker_set.positions(skeleton.parameters.lengths), marker_set, by)
     names = tuple(markers)
     at = [skeleton.segments.index(marker_set.marker(name).segment) for name in names]
-    world = [frames[i, :3, :3] @ markers[n] + frames[i, :3, 3]
-             for i, n in zip(at, names, strict=True)]
+    world = [
+        frames[i, :3, :3] @ markers[n] + frames[i, :3, 3] for i, n in zip(at, names, strict=True)
+    ]
     return names, np.tile(world, (5, 1, 1))
 
 
 def trunk(lengths):
     """Return the distance from mid-hip to mid-shoulder, trunk straight [m]."""
-    return np.hypot(*(sum(lengths[f'{part}_{to}'] for part in ('l5s1', 't12l1', 'shoulder'))
-                      for to in ('forward', 'height')))
+    return np.hypot(
+        *(
+            sum(lengths[f'{part}_{to}'] for part in ('l5s1', 't12l1', 'shoulder'))
+            for to in ('forward', 'height')
+        )
+    )
 
 
 def test_deeper_pelvis_leaves_the_trunk_its_length(person):
     """Hip centres and shoulders stay: opencap_lab_51 has hip centres as markers of their own."""
     marker_set = load_marker_set('opencap_lab_51')
     skeleton = Skeleton3D.of(person)
-    hips = {f'{side}_HJC': skeleton.points(skeleton.standing())[f'hip_{side.lower()}']
-            for side in 'RL'}
+    hips = {
+        f'{side}_HJC': skeleton.points(skeleton.standing())[f'hip_{side.lower()}'] for side in 'RL'
+    }
     found = []
     for by in (1.0, 1.1):
         names, positions = standing(person, marker_set, by)
@@ -83,10 +91,14 @@ def test_deeper_pelvis_leaves_the_trunk_its_length(person):
     assert trunk(usual) == pytest.approx(trunk(own), rel=1e-6)
     assert usual['l5s1_height'] == pytest.approx(own['l5s1_height'], rel=1e-6)
     # The pelvis below the sacrum grows by a tenth, sacrum and spine give way by one factor.
-    below = [[lengths[f'l5s1_{to}'] - lengths[f'sacrum_{to}'] for to in ('forward', 'height')]
-             for lengths in found]
+    below = [
+        [lengths[f'l5s1_{to}'] - lengths[f'sacrum_{to}'] for to in ('forward', 'height')]
+        for lengths in found
+    ]
     assert below[1] == pytest.approx(1.1 * np.array(below[0]))
-    shares = [deep[name] / usual[name] for name in ('sacrum_height', 't12l1_height',
-                                                    'shoulder_height', 'shoulder_forward')]
+    shares = [
+        deep[name] / usual[name]
+        for name in ('sacrum_height', 't12l1_height', 'shoulder_height', 'shoulder_forward')
+    ]
     assert shares == pytest.approx([shares[0]] * 4)
     assert 0.97 < shares[0] < 1.0

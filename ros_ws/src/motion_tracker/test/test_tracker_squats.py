@@ -51,8 +51,9 @@ def test_markers_fit_within_fifteen_millimetres(tracked):
 def test_what_the_set_cannot_see_is_known(squats):
     model, _ = model_for(squats.subject, squats.marker_set)
     solver = InverseKinematics(Skeleton3D.of(squats.subject), model)
-    assert set(solver.unseen) == {f'{name}_{side}' for side in 'rl'
-                                  for name in ('wrist_flex', 'wrist_dev', 'mtp_angle')}
+    assert set(solver.unseen) == {
+        f'{name}_{side}' for side in 'rl' for name in ('wrist_flex', 'wrist_dev', 'mtp_angle')
+    }
 
 
 def test_five_squats_are_five_lifts_from_the_hands(outputs):
@@ -86,15 +87,18 @@ def test_moment_about_l5_s1_from_both_sides(squats, tracked):
     skeleton = Skeleton3D.of(replace(squats.subject, mass=60.1))
     q = zero_phase(np.array([solution.q for solution in solutions]), 100.0, 6.0)
     qd, qdd = derivatives(q, 100.0)
-    plates = {side: [zero_phase(part, 100.0, 25.0) for part in parts]
-              for side, parts in squats.wrenches.items()}
+    plates = {
+        side: [zero_phase(part, 100.0, 25.0) for part in parts]
+        for side, parts in squats.wrenches.items()
+    }
     missing = []
     for i in range(20, len(q) - 20):
         wrench = np.zeros((len(skeleton.segments), 6))
         for side, (force, moment) in plates.items():
             wrench[skeleton.segments.index(f'foot_{side[0]}')] = [*force[i], *moment[i]]
-        tau = compiled.newton_euler(skeleton.tree, q[i].copy(), qd[i].copy(), qdd[i].copy(),
-                                    wrench, compiled.GRAVITY)
+        tau = compiled.newton_euler(
+            skeleton.tree, q[i].copy(), qd[i].copy(), qdd[i].copy(), wrench, compiled.GRAVITY
+        )
         _, origin, axis = compiled.body_frames(skeleton.tree, q[i].copy())
         residual = np.array([tau[0], -tau[2], tau[1]])
         about_hips = np.linalg.solve(axis[3:6], tau[3:6])

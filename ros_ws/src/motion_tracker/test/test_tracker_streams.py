@@ -38,8 +38,9 @@ def test_rows_of_many_times_are_those_of_single_times():
     rows = stream.raw_rows_at(times)
     single = [stream.raw_at(float(time)) for time in times]
     nothing = np.full(2, np.nan)
-    assert np.array_equal(rows, [nothing if row is None else row for row in single],
-                          equal_nan=True)
+    assert np.array_equal(
+        rows, [nothing if row is None else row for row in single], equal_nan=True
+    )
     lost = [True, False, False, False, False, True, True, False, False, True]
     assert np.isnan(rows[:, 0]).tolist() == lost
     assert np.isnan(stream.raw_rows_at(np.array([START + 5.0]))).all()
@@ -63,8 +64,11 @@ def test_refused_samples_are_counted_by_kind():
     assert not stream.push(START + 0.019, np.zeros(2))
     assert not stream.push(START + 0.001, np.zeros(2))
     assert not stream.push(START + 0.020, np.array([np.nan, 0.0]))
-    assert counts == {'right plate: duplicate stamps': 1, 'right plate: unsorted stamps': 1,
-                      'right plate: not finite': 1}
+    assert counts == {
+        'right plate: duplicate stamps': 1,
+        'right plate: unsorted stamps': 1,
+        'right plate: not finite': 1,
+    }
 
 
 def test_a_few_lost_samples_are_bridged_and_counted():

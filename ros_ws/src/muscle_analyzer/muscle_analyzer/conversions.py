@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Messages of the analyzer's results, and of what it reads.
+"""Messages of the analyzer's results, and of what it reads.
 
 Each result has one function that gives the fields of its message, and one that makes the message;
 `WRITERS` make of the same fields the bytes of live samples.
@@ -53,7 +52,11 @@ DISC = 'l5_s1'
 WRITERS: Final = {
     kind: MessageWriter(kind)
     for kind in (
-        MuscleAnalysisMsg, SpineLoadMsg, JointReactionsMsg, JointTorquesMsg, WrenchStamped,
+        MuscleAnalysisMsg,
+        SpineLoadMsg,
+        JointReactionsMsg,
+        JointTorquesMsg,
+        WrenchStamped,
     )
 }
 

@@ -23,8 +23,7 @@ SAMPLES: Final = 2
 
 @dataclass(frozen=True, eq=False)
 class WaitingLift:
-    """
-    A lift that waits for its analysis.
+    """A lift that waits for its analysis.
 
     Attributes
     ----------
@@ -44,8 +43,7 @@ class WaitingLift:
 
 
 class LiftQueue:
-    """
-    Analyses lifts in the order of their arrival.
+    """Analyses lifts in the order of their arrival.
 
     Parameters
     ----------

@@ -231,9 +231,7 @@ class MuscleAnalyzerNode(PipelineNode):
         yield
         self._muscles.publish(muscles)
         yield
-        self._joints.publish(
-            _bytes(JointReactions, conversions.joint_reactions_fields(analysis))
-        )
+        self._joints.publish(_bytes(JointReactions, conversions.joint_reactions_fields(analysis)))
         yield
         self.get_logger().info(
             f'{lift.lift_id} {lift.source}: peak L5-S1 compression '

@@ -78,12 +78,20 @@ def pendulum_text(constraints='', forces=MUSCLE, version='40000', elbow_first=Fa
     upper = BODY.format(name='upper', extra=CYLINDER, **UPPER)
     lower = BODY.format(name='lower', extra='', **LOWER)
     shoulder = PIN.format(
-        name='shoulder', parent='ground', child='upper', parent_path='/ground', height=0,
+        name='shoulder',
+        parent='ground',
+        child='upper',
+        parent_path='/ground',
+        height=0,
         coordinate='q1',
     )
     elbow = PIN.format(
-        name='elbow', parent='upper', child='lower', parent_path='/bodyset/upper',
-        height=-UPPER['length'], coordinate='q2',
+        name='elbow',
+        parent='upper',
+        child='lower',
+        parent_path='/bodyset/upper',
+        height=-UPPER['length'],
+        coordinate='q2',
     )
     joints = elbow + shoulder if elbow_first else shoulder + elbow
     return f"""<?xml version="1.0"?><OpenSimDocument Version="{version}"><Model name="pendulum">

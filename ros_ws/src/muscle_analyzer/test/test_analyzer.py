@@ -49,11 +49,7 @@ def held_posture(skeleton, pose, box_weight=100.0, n=1, **changes):
     centre = (WEIGHT * body + box_weight * box) / (WEIGHT + box_weight)
     cop = points[:, [POINTS.index('mtp_r'), POINTS.index('mtp_l')]].copy()
     cop[:, :, 0] = centre[:, None, 0]
-    forces = {
-        'ground_force': np.zeros((n, 2, 3)),
-        'hand_force': np.zeros((n, 2, 3)),
-        'cop': cop,
-    }
+    forces = {'ground_force': np.zeros((n, 2, 3)), 'hand_force': np.zeros((n, 2, 3)), 'cop': cop}
     forces['ground_force'][:, :, 2] = 0.5 * (WEIGHT + box_weight)
     forces['hand_force'][:, :, 2] = -0.5 * box_weight
     still = np.zeros_like(q)
@@ -167,9 +163,7 @@ def test_predicted_lift_may_face_anywhere(analyzer):
     still = analyzer.analyze(values, 'l', 'predicted')
     assert np.abs(still.compression - first.compression).max() > 20.0
     assert second.l5_s1_force == pytest.approx(first.l5_s1_force, abs=1.0)
-    assert second.net_moment_top_down @ turn == pytest.approx(
-        first.net_moment_top_down, abs=0.1
-    )
+    assert second.net_moment_top_down @ turn == pytest.approx(first.net_moment_top_down, abs=0.1)
     torques = [
         analyzer.joint_torques(result, motion).torque
         for result, motion in ((first, straight), (second, turned))
@@ -290,9 +284,7 @@ def test_disc_frame_turns_the_same_force(analyzer, skeleton):
     angles = [np.arctan2(r.anterior_shear[0], r.compression[0]) for r in (turned, plain)]
     assert np.degrees(angles[0] - angles[1]) == pytest.approx(21.0, abs=0.01)
     # The stated sensitivity is the derivative along that turn.
-    assert turned.anterior_shear_per_degree[0] == pytest.approx(
-        np.radians(turned.compression[0])
-    )
+    assert turned.anterior_shear_per_degree[0] == pytest.approx(np.radians(turned.compression[0]))
 
 
 def test_force_length_velocity_weakens_muscles(analyzer, skeleton):

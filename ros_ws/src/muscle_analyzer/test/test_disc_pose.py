@@ -32,8 +32,9 @@ def upright(q, skeleton):
     feet = 0.5 * (points['ankle_r'] + points['mtp_r']), 0.5 * (points['ankle_l'] + points['mtp_l'])
     cop = np.array(feet) * [1.0, 1.0, 0.0]
     force = np.array([[0.0, 0.0, 0.5 * WEIGHT]] * 2)
-    return skeleton.body_motion([1.0], q[None], 0.0 * q[None], 0.0 * q[None],
-                                ground_force=force[None], cop=cop[None])
+    return skeleton.body_motion(
+        [1.0], q[None], 0.0 * q[None], 0.0 * q[None], ground_force=force[None], cop=cop[None]
+    )
 
 
 @pytest.fixture(scope='module')
@@ -74,12 +75,14 @@ def test_lean_by_hand():
     half = math.radians(10.5)
     rotation = to_opensim(about_left(21.0).T).T
     _, orientation = world_poses(pose(rotation)[None])
-    np.testing.assert_allclose(orientation, [[0.0, math.sin(half), 0.0, math.cos(half)]],
-                               atol=1e-15)
+    np.testing.assert_allclose(
+        orientation, [[0.0, math.sin(half), 0.0, math.cos(half)]], atol=1e-15
+    )
 
 
 quaternions = st.lists(st.floats(-1.0, 1.0), min_size=4, max_size=4).filter(
-    lambda q: np.linalg.norm(q) > 0.1)
+    lambda q: np.linalg.norm(q) > 0.1
+)
 
 
 @given(st.lists(quaternions, min_size=1, max_size=3))

@@ -95,9 +95,7 @@ def test_samples_that_are_not_good_data_are_left_out(analysis):
     wrong[10:14] = 7.0
     moved = with_activation(analysis, ['vaslat_r'], wrong)
     bad = replace(analysis.reports[0], status=SolveStatus.MUSCLE_TOO_WEAK)
-    reports = tuple(
-        bad if 10 <= k < 14 else report for k, report in enumerate(analysis.reports)
-    )
+    reports = tuple(bad if 10 <= k < 14 else report for k, report in enumerate(analysis.reports))
     (match,) = compare_emg(envelopes([course]), replace(moved, reports=reports))
     assert match.time.size == 27
     assert match.correlation == pytest.approx(1.0, abs=1e-4)

@@ -41,8 +41,9 @@ def test_spline_equals_scipys_with_the_same_end_conditions():
 def test_spline_of_a_cubic_is_the_cubic(coefficients, x):
     cubic = np.polynomial.Polynomial(coefficients)
     values = simm_spline(X, cubic(X)).derivatives(x)
-    assert values == pytest.approx([cubic.deriv(k)(x) if k else cubic(x) for k in range(3)],
-                                   abs=1e-8)
+    assert values == pytest.approx(
+        [cubic.deriv(k)(x) if k else cubic(x) for k in range(3)], abs=1e-8
+    )
 
 
 def test_spline_goes_on_as_a_straight_line():

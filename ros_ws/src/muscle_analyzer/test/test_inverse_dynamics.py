@@ -5,11 +5,7 @@
 import numpy as np
 import pytest
 
-from muscle_analyzer.core.inverse_dynamics import (
-    add_force,
-    inverse_dynamics,
-    wrench_at,
-)
+from muscle_analyzer.core.inverse_dynamics import add_force, inverse_dynamics, wrench_at
 from muscle_analyzer.core.kinematics import body_jacobians, forward_kinematics
 
 G = 9.81
@@ -99,14 +95,16 @@ def test_lifting_model_at_rest_weighs_what_its_bodies_weigh(lifting_multibody):
 def test_squat_torques_are_those_of_opensim(squats):
     """All 62 tree coordinates within 3 % of peak or 0.01 N m; measured: 0.9 %, knees 0.05 %."""
     names, reference = squats.reference('id.sto')
-    torques = np.array([
-        inverse_dynamics(
-            squats.model.tree,
-            forward_kinematics(squats.model.tree, squats.q[i], squats.qd[i], squats.qdd[i]),
-            squats.external[i],
-        ).tree_force
-        for i in (squats.sample(time) for time in reference[:, 0])
-    ])
+    torques = np.array(
+        [
+            inverse_dynamics(
+                squats.model.tree,
+                forward_kinematics(squats.model.tree, squats.q[i], squats.qd[i], squats.qdd[i]),
+                squats.external[i],
+            ).tree_force
+            for i in (squats.sample(time) for time in reference[:, 0])
+        ]
+    )
     for k, coordinate in enumerate(squats.model.tree_coordinate_names):
         column = next(n for n in names if n in (f'{coordinate}_moment', f'{coordinate}_force'))
         expected = reference[:, names.index(column)]

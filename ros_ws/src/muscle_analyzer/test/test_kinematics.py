@@ -5,11 +5,7 @@
 import numpy as np
 import pytest
 
-from muscle_analyzer.core.kinematics import (
-    body_jacobians,
-    forward_kinematics,
-    point_jacobian,
-)
+from muscle_analyzer.core.kinematics import body_jacobians, forward_kinematics, point_jacobian
 
 STEP = 1e-5
 

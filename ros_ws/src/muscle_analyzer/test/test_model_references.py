@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Models of other groups against OpenSim 4.6 in random postures: frames, markers, muscles.
+"""Models of other groups against OpenSim 4.6 in random postures: frames, markers, muscles.
 
 The models are in wheels of PyPI; ``scripts/reference_models.py`` takes them out of there, and
 without it these tests are skipped.  The reference files were made by

@@ -17,8 +17,9 @@ def test_derivatives_of_waves():
     inner = slice(30, -30)
     omega = 2.0 * np.pi * np.array([0.7, 0.5])
     np.testing.assert_allclose(second[inner], -(omega**2) * WAVE[inner], atol=1e-6)
-    np.testing.assert_allclose(first[inner, 0], (omega[0] * np.cos(omega[0] * TIME))[inner],
-                               atol=1e-6)
+    np.testing.assert_allclose(
+        first[inner, 0], (omega[0] * np.cos(omega[0] * TIME))[inner], atol=1e-6
+    )
 
 
 def test_filter_has_no_delay_and_the_gain_of_two_passes():

@@ -25,9 +25,7 @@ def test_coupled_coordinate_is_a_function_of_its_driver(coupled_pendulum):
     """q2 = 0.4 q1^2 - 0.3 q1 + 0.1, differentiated by hand."""
     assert coupled_pendulum.coordinate_names == ('q1',)
     q, qd, qdd = 0.7, 1.3, -0.4
-    state = coordinate_state(
-        coupled_pendulum.tree, np.array([q]), np.array([qd]), np.array([qdd])
-    )
+    state = coordinate_state(coupled_pendulum.tree, np.array([q]), np.array([qd]), np.array([qdd]))
     at = coupled_pendulum.tree_coordinate_names.index('q2')
     gain = 0.8 * q - 0.3
     assert state.value[at] == pytest.approx(0.4 * q**2 - 0.3 * q + 0.1)
@@ -38,8 +36,10 @@ def test_coupled_coordinate_is_a_function_of_its_driver(coupled_pendulum):
 
 def test_locked_coordinate_stays_at_its_default(write_model):
     path = write_model(
-        ('<Coordinate name="q2"><default_value>0', '<Coordinate name="q2"><locked>true</locked>'
-         '<default_value>0.5')
+        (
+            '<Coordinate name="q2"><default_value>0',
+            '<Coordinate name="q2"><locked>true</locked><default_value>0.5',
+        )
     )
     model = compile_model(read_osim(path))
     assert model.coordinate_names == ('q1',)
@@ -50,8 +50,10 @@ def test_locked_coordinate_stays_at_its_default(write_model):
 
 def test_body_without_joint_is_named(write_model):
     path = write_model(
-        ('<socket_parent>/bodyset/lower</socket_parent>',
-         '<socket_parent>/bodyset/upper</socket_parent>')
+        (
+            '<socket_parent>/bodyset/lower</socket_parent>',
+            '<socket_parent>/bodyset/upper</socket_parent>',
+        )
     )
     with pytest.raises(ModelCompilationError, match="'upper' is the child of 2 joints"):
         compile_model(read_osim(path))

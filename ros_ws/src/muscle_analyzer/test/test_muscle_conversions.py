@@ -109,9 +109,16 @@ def test_spine_load_has_its_own_status_and_signs(analysis):
     assert list(message.anterior_shear_per_degree) == [3.0, 4.0]
 
 
-@pytest.mark.parametrize(('station', 'name'), [
-    ('/', 'l5_s1'), ('', 'l5_s1'), ('/cell_3', 'cell_3/l5_s1'), ('station_1', 'station_1/l5_s1'),
-    ('/hall/cell_3', 'hall/cell_3/l5_s1')])
+@pytest.mark.parametrize(
+    ('station', 'name'),
+    [
+        ('/', 'l5_s1'),
+        ('', 'l5_s1'),
+        ('/cell_3', 'cell_3/l5_s1'),
+        ('station_1', 'station_1/l5_s1'),
+        ('/hall/cell_3', 'hall/cell_3/l5_s1'),
+    ],
+)
 def test_frame_of_the_disc_has_the_name_of_the_station(station, name):
     assert conversions.disc_frame_id(station) == name
 
@@ -137,9 +144,16 @@ def test_joint_reactions(analysis):
 
 
 def test_joint_torques(analysis):
-    torques = JointTorques('lift_003', 'predicted', analysis.time, ('hip', 'knee'),
-                           numbers(N, 2), -numbers(N, 2), 2.0 * numbers(N, 2),
-                           np.array([0, 305]))
+    torques = JointTorques(
+        'lift_003',
+        'predicted',
+        analysis.time,
+        ('hip', 'knee'),
+        numbers(N, 2),
+        -numbers(N, 2),
+        2.0 * numbers(N, 2),
+        np.array([0, 305]),
+    )
     message = conversions.torques_to_msg(torques)
     assert message.source == SpineLoad.PREDICTED
     assert list(message.torque) == [1.0, 2.0, 3.0, 4.0]

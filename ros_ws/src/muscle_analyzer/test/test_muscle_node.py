@@ -42,11 +42,19 @@ from lifting_node.stamps import to_seconds  # noqa: E402
 PERSON = Person('p01', 'male', 63.5, 1.69, 25)
 NAMESPACE = 'muscle_node_test'
 PATIENCE = 60.0
-OUTPUTS = {'muscle_analysis': MuscleAnalysis, 'spine_load': SpineLoad,
-           'joint_torques': JointTorques, 'l5_s1/reaction': WrenchStamped}
-INPUTS = {'subject': (Subject, qos.LATCHED), 'task': (Task, qos.LATCHED),
-          'body_motion': (BodyMotion, qos.FRAMES), 'measured_lift': (MeasuredLift, qos.RESULTS),
-          'predicted_lift': (PredictedLift, qos.RESULTS)}
+OUTPUTS = {
+    'muscle_analysis': MuscleAnalysis,
+    'spine_load': SpineLoad,
+    'joint_torques': JointTorques,
+    'l5_s1/reaction': WrenchStamped,
+}
+INPUTS = {
+    'subject': (Subject, qos.LATCHED),
+    'task': (Task, qos.LATCHED),
+    'body_motion': (BodyMotion, qos.FRAMES),
+    'measured_lift': (MeasuredLift, qos.RESULTS),
+    'predicted_lift': (PredictedLift, qos.RESULTS),
+}
 
 
 def standing(skeleton, time, box_weight=0.0):
@@ -66,8 +74,16 @@ class Station:
     """The node's process and a client beside it."""
 
     def __init__(self):
-        command = [sys.executable, '-m', 'muscle_analyzer.muscle_analyzer_node', '--ros-args',
-                   '-r', f'__ns:=/{NAMESPACE}', '-p', 'disc_frame:=vertebral']
+        command = [
+            sys.executable,
+            '-m',
+            'muscle_analyzer.muscle_analyzer_node',
+            '--ros-args',
+            '-r',
+            f'__ns:=/{NAMESPACE}',
+            '-p',
+            'disc_frame:=vertebral',
+        ]
         self.process = subprocess.Popen(command, env=dict(os.environ))
         rclpy.init()
         self.client = rclpy.create_node('client', namespace=NAMESPACE)
@@ -78,8 +94,10 @@ class Station:
             self.client.create_subscription(kind, topic, self.got[topic].append, qos.FRAMES)
         self.health = {}
         self.client.create_subscription(DiagnosticArray, '/diagnostics', self._keep, 10)
-        self.publishers = {topic: self.client.create_publisher(kind, topic, profile)
-                           for topic, (kind, profile) in INPUTS.items()}
+        self.publishers = {
+            topic: self.client.create_publisher(kind, topic, profile)
+            for topic, (kind, profile) in INPUTS.items()
+        }
 
     def _keep(self, message):
         for status in message.status:
@@ -111,6 +129,7 @@ class Station:
 
     def take(self, topic, since, number=1):
         """Wait for messages of a topic with stamps from `since` on; return them, oldest first."""
+
         def new():
             return [m for m in self.got[topic] if to_seconds(m.header.stamp) > since - 1e-6]
 
@@ -151,8 +170,9 @@ def station():
 
 
 def live(station, motion, status=0):
-    quality = replace(conversions.MotionQuality.exact(len(motion)),
-                      status=np.full(len(motion), status))
+    quality = replace(
+        conversions.MotionQuality.exact(len(motion)), status=np.full(len(motion), status)
+    )
     station.send('body_motion', conversions.motion_to_msg(motion, quality))
 
 
@@ -209,8 +229,9 @@ def test_lifts_are_analysed_with_their_source(station):
     motion = standing(Skeleton3D.of(PERSON), [200.0, 200.01, 200.02])
     station.send('measured_lift', measured('lift_007', motion))
     flat = standing(Skeleton2D.of(PERSON), [200.0, 200.02])
-    failed, good = (PredictedLift(lift_id='lift_007', subject='p01', box_mass=12.0)
-                    for _ in range(2))
+    failed, good = (
+        PredictedLift(lift_id='lift_007', subject='p01', box_mass=12.0) for _ in range(2)
+    )
     failed.report.status = SolveReport.PREDICTOR_INFEASIBLE
     good.motion = conversions.motion_to_msg(flat, conversions.MotionQuality.exact(2))
     station.send('predicted_lift', failed)

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Muscle paths of the lifting full-body model against OpenSim 4.6 and against derivatives.
+"""Muscle paths of the lifting full-body model against OpenSim 4.6 and against derivatives.
 
 The reference files were made by ``reference/make_moment_arms.py``.
 """
@@ -26,10 +25,7 @@ from muscle_analyzer.core.subject_model import lifting_model_path
 
 HERE = Path(__file__).parent
 SQUATS = HERE.parents[4] / 'shared' / 'data' / 'squats_bodyweight' / 'opensim46_reference'
-MODELS = {
-    'generic': lifting_model_path(),
-    'squats': SQUATS / 'lfb_subject4.osim',
-}
+MODELS = {'generic': lifting_model_path(), 'squats': SQUATS / 'lfb_subject4.osim'}
 CASES = [
     'generic',
     pytest.param(
@@ -82,8 +78,7 @@ def test_moment_arms_equal_opensim(which):
 
 @pytest.mark.parametrize('which', CASES)
 def test_lengths_equal_opensim(which):
-    """
-    Compare lengths; of the gastrocnemii only loosely.
+    """Compare lengths; of the gastrocnemii only loosely.
 
     They wrap over two objects, and OpenSim then slides tangent points off the surface: its arc
     is shorter than the straight line between its ends, by up to 4.3 mm in deep knee flexion.

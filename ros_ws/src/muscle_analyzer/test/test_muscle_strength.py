@@ -45,9 +45,7 @@ def test_forces_are_kept_without_the_option(lifting_model):
 def test_geometric_strength_grows_with_mass_to_two_thirds(lifting_model):
     heavy = Subject('h', 'male', 2.0 * lifting_model.mass, 1.8, 30)
     options = StrengthOptions(StrengthScaling.GEOMETRIC)
-    np.testing.assert_allclose(
-        force_factors(lifting_model, heavy, options), 2.0 ** (2.0 / 3.0)
-    )
+    np.testing.assert_allclose(force_factors(lifting_model, heavy, options), 2.0 ** (2.0 / 3.0))
 
 
 def test_women_have_the_published_share_of_mens_strength(lifting_model):

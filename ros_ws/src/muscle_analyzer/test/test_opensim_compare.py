@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-The comparison without OpenSim: its files written here from this project's numbers.
+"""The comparison without OpenSim: its files written here from this project's numbers.
 
 Unchanged numbers give no difference; a number that was changed is found at its place, and in the
 steps that hang on it only.
@@ -145,8 +144,7 @@ def test_a_moment_arm_that_differs_is_found_at_its_place(box_lift, own, tmp_path
 
 
 def test_forces_that_cost_more_are_told_apart_from_the_steps_after(box_lift, own, tmp_path):
-    """
-    Pull more than needed with four muscles, and say so in the reactions.
+    """Pull more than needed with four muscles, and say so in the reactions.
 
     The cost at equal torques is above this project's; the reaction at equal muscle forces agrees.
     """
@@ -160,9 +158,7 @@ def test_forces_that_cost_more_are_told_apart_from_the_steps_after(box_lift, own
     result = compared(
         box_lift,
         own,
-        write_results(
-            tmp_path, own, force=force, activation=force / strength, reaction=reaction
-        ),
+        write_results(tmp_path, own, force=force, activation=force / strength, reaction=reaction),
     )
     for instant in result.instants:
         assert instant.cost_equal_torques[0] < instant.cost_equal_torques[1]

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-The real OpenSim on exported folders. Skipped where there is none (`make opensim`).
+"""The real OpenSim on exported folders. Skipped where there is none (`make opensim`).
 
 A pendulum of two links takes OpenSim no time; one sample of the lifting full-body model takes it
 seconds, so that comparison is among the long tests.

@@ -51,8 +51,7 @@ def spatial_transform(**axes):
     for kind, numbers in AXES.items():
         for i in numbers:
             axis, coordinate, function = axes.get(
-                f'{kind}{i}',
-                (np.eye(3)[i - 1], '', '<Constant><value>0</value></Constant>'),
+                f'{kind}{i}', (np.eye(3)[i - 1], '', '<Constant><value>0</value></Constant>')
             )
             text += f'<TransformAxis name="{kind}{i}"><coordinates>{coordinate}</coordinates>'
             text += f'<axis>{" ".join(map(str, axis))}</axis>{function}</TransformAxis>'
@@ -90,7 +89,8 @@ def check_derivatives(model, q):
     spin = [skew[2, 1], skew[0, 2], skew[1, 0]]
     np.testing.assert_allclose(now.angular_velocity[1], spin, atol=1e-8)
     for rate, derivative in (
-        ('velocity', 'acceleration'), ('angular_velocity', 'angular_acceleration'),
+        ('velocity', 'acceleration'),
+        ('angular_velocity', 'angular_acceleration'),
     ):
         change = (getattr(after, rate)[1] - getattr(before, rate)[1]) / (2 * step)
         np.testing.assert_allclose(getattr(now, derivative)[1], change, atol=1e-7)
@@ -203,16 +203,36 @@ def test_other_joints_are_named(tmp_path, tag):
         ('<Sine><amplitude>1</amplitude></Sine>', 'q0', UnsupportedElementError, '<Sine>'),
         ('', 'q0', OsimFormatError, 'has no function'),
         ('<GCVSpline><x>0 1</x></GCVSpline>', 'q0', UnsupportedElementError, '<GCVSpline>'),
-        ('<LinearFunction><coefficients>1</coefficients></LinearFunction>', 'q0',
-         OsimFormatError, "coefficients>: '1', want 2 numbers"),
-        ('<SimmSpline><x>0 0 1</x><y>0 1 2</y></SimmSpline>', 'q0', OsimFormatError,
-         'x of a function must increase: 0.0, 0.0'),
-        ('<LinearFunction><coefficients>1 0</coefficients></LinearFunction>', 'q0 q1',
-         UnsupportedElementError, 'function of 2 coordinates'),
-        ('<LinearFunction><coefficients>1 0</coefficients></LinearFunction>', 'q7',
-         OsimFormatError, "has no coordinate 'q7'"),
-        ('<LinearFunction><coefficients>1 0</coefficients></LinearFunction>', '',
-         OsimFormatError, 'function of no coordinate'),
+        (
+            '<LinearFunction><coefficients>1</coefficients></LinearFunction>',
+            'q0',
+            OsimFormatError,
+            "coefficients>: '1', want 2 numbers",
+        ),
+        (
+            '<SimmSpline><x>0 0 1</x><y>0 1 2</y></SimmSpline>',
+            'q0',
+            OsimFormatError,
+            'x of a function must increase: 0.0, 0.0',
+        ),
+        (
+            '<LinearFunction><coefficients>1 0</coefficients></LinearFunction>',
+            'q0 q1',
+            UnsupportedElementError,
+            'function of 2 coordinates',
+        ),
+        (
+            '<LinearFunction><coefficients>1 0</coefficients></LinearFunction>',
+            'q7',
+            OsimFormatError,
+            "has no coordinate 'q7'",
+        ),
+        (
+            '<LinearFunction><coefficients>1 0</coefficients></LinearFunction>',
+            '',
+            OsimFormatError,
+            'function of no coordinate',
+        ),
     ],
 )
 def test_axes_that_cannot_be_used_are_named(tmp_path, function, coordinates, error, named):
@@ -222,6 +242,6 @@ def test_axes_that_cannot_be_used_are_named(tmp_path, function, coordinates, err
 
 
 def test_wrong_number_of_coordinates_is_named(tmp_path):
-    named = re.escape('<BallJoint name="joint"> has coordinates [\'q0\', \'q1\'], want 3')
+    named = re.escape("<BallJoint name=\"joint\"> has coordinates ['q0', 'q1'], want 3")
     with pytest.raises(OsimFormatError, match=named):
         read_osim(one_joint(tmp_path / 'joint.osim', 'BallJoint', 2))

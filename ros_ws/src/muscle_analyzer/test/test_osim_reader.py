@@ -120,7 +120,8 @@ def test_own_curve_of_a_muscle_replaces_that_of_the_defaults(write_model):
     own = """<FiberForceLengthCurve><strain_at_one_norm_force>0.8</strain_at_one_norm_force>
       <curviness></curviness></FiberForceLengthCurve><max_contraction_velocity>"""
     path = write_model(
-        ('DeGrooteFregly2016Muscle', tag), ('<gravity>', defaults),
+        ('DeGrooteFregly2016Muscle', tag),
+        ('<gravity>', defaults),
         ('<max_contraction_velocity>', own),
     )
     properties = read_osim(path).muscles[0].properties

@@ -80,13 +80,14 @@ def version_3(reverse='false', joint=None):
     upper = joint_3('hinge', 1, 'ground', reverse) if joint is None else joint
     ground = f'<Body name="ground"><mass>0</mass><Joint/>{DRUM.format("floor")}</Body>'
     muscle = MUSCLE.format(
-        tag='Thelen2003Muscle', off='<isDisabled>false</isDisabled>',
-        points=PATH_3.format(xyz=XYZ),
+        tag='Thelen2003Muscle', off='<isDisabled>false</isDisabled>', points=PATH_3.format(xyz=XYZ)
     )
     return document(
         30000,
-        ground + body_3('upper', upper) + body_3('lower', joint_3('knee', 2, 'upper')), '',
-        muscle, '<Marker name="m"><body>lower</body><location>0 1 0</location></Marker>',
+        ground + body_3('upper', upper) + body_3('lower', joint_3('knee', 2, 'upper')),
+        '',
+        muscle,
+        '<Marker name="m"><body>lower</body><location>0 1 0</location></Marker>',
         ('<isDisabled>true</isDisabled>', '<isDisabled>false</isDisabled>'),
     )
 
@@ -100,14 +101,19 @@ def version_4():
     joints = joint_4('hinge', 1, '/ground', 'upper')
     joints += joint_4('knee', 2, '/bodyset/upper', 'lower')
     muscle = MUSCLE.format(
-        tag='Thelen2003Muscle', off='<appliesForce>true</appliesForce>',
+        tag='Thelen2003Muscle',
+        off='<appliesForce>true</appliesForce>',
         points=PATH_4.format(xyz=XYZ),
     )
     marker = '<socket_parent_frame>/bodyset/lower</socket_parent_frame><location>0 1 0</location>'
     sets = f'<Ground name="ground">{DRUM.format("floor")}</Ground>'
     sets += f'<JointSet><objects>{joints}</objects></JointSet>'
     return document(
-        40000, bodies, sets, muscle, f'<Marker name="m">{marker}</Marker>',
+        40000,
+        bodies,
+        sets,
+        muscle,
+        f'<Marker name="m">{marker}</Marker>',
         ('<appliesForce>false</appliesForce>', '<isEnforced>true</isEnforced>'),
     )
 
@@ -131,8 +137,11 @@ def test_both_formats_give_one_model(tmp_path):
         (version_3(joint=''), OsimFormatError, '<Body name="upper"> has no <Joint>'),
         (version_3().replace('"30000"', '"20302"'), OsimFormatError, "Version='20302'"),
         (version_3().replace('"30000"', '"30501"'), OsimFormatError, "Version='30501'"),
-        (version_3().replace('<parent_body>ground', '<parent_body>hip'), OsimFormatError,
-         "there is no frame '/bodyset/hip'"),
+        (
+            version_3().replace('<parent_body>ground', '<parent_body>hip'),
+            OsimFormatError,
+            "there is no frame '/bodyset/hip'",
+        ),
     ],
 )
 def test_what_cannot_be_rewritten_is_named(tmp_path, text, error, named):

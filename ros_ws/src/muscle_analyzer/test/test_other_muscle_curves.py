@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Curves and strengths of Millard and Thelen muscles against OpenSim 4.6.
+"""Curves and strengths of Millard and Thelen muscles against OpenSim 4.6.
 
 The reference file was made by ``reference/make_muscle_strengths.py``.
 """
@@ -144,9 +143,7 @@ def test_strengths_equal_opensim(name):
         # OpenSim stops fibres at a shortest length, below which they carry nothing.
         free = data['active'][k] > 0.0
         compared += free.sum()
-        np.testing.assert_allclose(
-            active[free], data['active'][k][free], atol=1e-3, rtol=2e-6
-        )
+        np.testing.assert_allclose(active[free], data['active'][k][free], atol=1e-3, rtol=2e-6)
         if data['passive'].size:
             np.testing.assert_allclose(passive[free], data['passive'][k][free], atol=1e-3)
     assert compared > 0.9 * data['active'].size

@@ -19,13 +19,22 @@ def targets_at(model, q, reference=None, weight=0.0):
     zero = np.zeros(2)
     state = forward_kinematics(model.tree, q, zero, zero)
     body = np.array([1, 2])
-    place = np.array([
-        state.position[b] + state.rotation[b] @ local for b, local in zip(body, LOCAL, strict=True)
-    ])
+    place = np.array(
+        [
+            state.position[b] + state.rotation[b] @ local
+            for b, local in zip(body, LOCAL, strict=True)
+        ]
+    )
     return Targets(
-        body, LOCAL, place, np.array([100.0, 200.0]),
-        np.array([2]), state.rotation[2:].copy(), np.array([10.0]),
-        zero if reference is None else reference, np.full(2, weight),
+        body,
+        LOCAL,
+        place,
+        np.array([100.0, 200.0]),
+        np.array([2]),
+        state.rotation[2:].copy(),
+        np.array([10.0]),
+        zero if reference is None else reference,
+        np.full(2, weight),
     )
 
 
@@ -57,8 +66,14 @@ def test_bounds_hold_and_the_rest_is_fitted(pendulum):
 def test_coordinates_that_are_not_fitted_stay(pendulum):
     targets = targets_at(pendulum, np.array([0.7, -0.5]))
     fit = fit_pose(
-        pendulum.tree, targets, np.array([0.1, 0.3]), -FREE, FREE, np.array([True, False]),
-        1e-10, 50,
+        pendulum.tree,
+        targets,
+        np.array([0.1, 0.3]),
+        -FREE,
+        FREE,
+        np.array([True, False]),
+        1e-10,
+        50,
     )
     assert fit.q[1] == 0.3
 
@@ -92,20 +107,30 @@ def test_rates_of_points_are_those_of_the_coordinates(pendulum):
     state = forward_kinematics(pendulum.tree, q, qd, qdd)
 
     def of_points(spin, speed):
-        return np.array([speed(b, state.rotation[b] @ local, spin)
-                         for b, local in zip(targets.point_body, LOCAL, strict=True)])
+        return np.array(
+            [
+                speed(b, state.rotation[b] @ local, spin)
+                for b, local in zip(targets.point_body, LOCAL, strict=True)
+            ]
+        )
 
     velocity = of_points(
         state.angular_velocity, lambda b, arm, w: state.velocity[b] + np.cross(w[b], arm)
     )
     acceleration = of_points(
         state.angular_velocity,
-        lambda b, arm, w: state.acceleration[b]
-        + np.cross(state.angular_acceleration[b], arm)
-        + np.cross(w[b], np.cross(w[b], arm)),
+        lambda b, arm, w: (
+            state.acceleration[b]
+            + np.cross(state.angular_acceleration[b], arm)
+            + np.cross(w[b], np.cross(w[b], arm))
+        ),
     )
     rate, again = map_rates(
-        pendulum.tree, targets, q, state, BOTH,
+        pendulum.tree,
+        targets,
+        q,
+        state,
+        BOTH,
         Rates(velocity, state.angular_velocity[2:], np.zeros(2)),
         Rates(acceleration, state.angular_acceleration[2:], np.zeros(2)),
     )

@@ -95,8 +95,10 @@ def _opensim_factors(generic, scaled):
     for a, b in zip(generic.muscles, scaled.muscles, strict=True):
         for p, q in zip(a.points, b.points, strict=True):
             add(p.body, p.location, q.location)
-    known = {name: np.array([np.median(r) if r else np.nan for r in axes])
-             for name, axes in ratios.items()}
+    known = {
+        name: np.array([np.median(r) if r else np.nan for r in axes])
+        for name, axes in ratios.items()
+    }
     # Axes without any offset along them (head, hands) were scaled like the body's others.
     return {name: np.where(np.isnan(f), np.nanmean(f), f) for name, f in known.items()}
 
@@ -120,8 +122,10 @@ def test_same_factors_give_the_model_of_opensims_scale_tool(lifting_model, squat
     for a, b in zip(ours.wrap_objects, theirs.wrap_objects, strict=True):
         assert a.dimensions == pytest.approx(b.dimensions, rel=1e-6)
     ratios = [
-        (a.optimal_fiber_length / b.optimal_fiber_length,
-         a.tendon_slack_length / b.tendon_slack_length)
+        (
+            a.optimal_fiber_length / b.optimal_fiber_length,
+            a.tendon_slack_length / b.tendon_slack_length,
+        )
         for a, b in zip(ours.muscles, theirs.muscles, strict=True)
     ]
     np.testing.assert_allclose(ratios, 1.0, atol=2e-3)

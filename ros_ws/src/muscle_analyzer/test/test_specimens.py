@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-A model with one of everything against OpenSim 4.6, and against derivatives of its own lengths.
+"""A model with one of everything against OpenSim 4.6, and against derivatives of its own lengths.
 
 ``reference/make_specimens.py`` writes the model: every joint type and function in a chain, and
 muscles at random over surfaces of every type and half.  What is known to differ, and is measured:

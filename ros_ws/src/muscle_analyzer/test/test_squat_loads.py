@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Static optimisation and L5-S1 reaction of the real squats against OpenSim 4.6.
+"""Static optimisation and L5-S1 reaction of the real squats against OpenSim 4.6.
 
 OpenSim's own inverse kinematics is the input, its scaled model the model.  Skipped where the
 recording is not there.
@@ -45,8 +44,7 @@ def solutions(squats):
 
 
 def cost_gaps(squats, optimum):
-    """
-    Give our and OpenSim's cost and the muscles' force difference at equal torques.
+    """Give our and OpenSim's cost and the muscles' force difference at equal torques.
 
     The torques are those that OpenSim's muscles and reserves balanced; the moment arms are ours,
     which differ from its by 0.4 mm at most.
@@ -90,8 +88,7 @@ def test_muscle_forces_of_the_whole_chain_equal_opensims(solutions, optimum):
 
 
 def test_l5_s1_force_equals_opensims(squats, solutions, optimum):
-    """
-    Compare the resultant of S1 on L5 within 3 % where both solved the same problem well.
+    """Compare the resultant of S1 on L5 within 3 % where both solved the same problem well.
 
     Where OpenSim stopped 0.8 % and more above the smallest cost (upright standing, some 550 N) its
     muscles pull more than needed; there the difference is up to 39 N, and is compared with 3 % of

@@ -30,8 +30,10 @@ def table(bounds):
         np.array([1, 2, 0, 1]),
         np.array([-1.0, 1.0, 1.0, -1.0]),
         np.array([3, 0, -1, 1]),
-        **{name: np.array([[getattr(bound, name) for bound in side] for side in bounds])
-           for name in ('coefficients', 'magnitude', 'angle_factor', 'speed_factor')},
+        **{
+            name: np.array([[getattr(bound, name) for bound in side] for side in bounds])
+            for name in ('coefficients', 'magnitude', 'angle_factor', 'speed_factor')
+        },
     )
 
 
@@ -40,9 +42,7 @@ def test_block_of_torques_and_limits(table, bounds):
     frames = RNG.normal(size=(N, 3, 4))
     frames /= np.linalg.norm(frames, axis=2, keepdims=True)
     net, torque = RNG.normal(size=(N, 3)), RNG.normal(size=(N, 3))
-    got, lower, upper = torques_and_limits(
-        hold(table), position, velocity, frames, 2, net, torque
-    )
+    got, lower, upper = torques_and_limits(hold(table), position, velocity, frames, 2, net, torque)
     left = matrix_from_quaternion(frames[:, 2])[:, :, 1]
     np.testing.assert_allclose(got[:, 0], -(left * net).sum(axis=1))
     np.testing.assert_array_equal(got[:, 1:], torque[:, [2, 0, 1]] * [1.0, 1.0, -1.0])

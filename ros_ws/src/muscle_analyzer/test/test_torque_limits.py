@@ -33,8 +33,12 @@ def analyzer():
 
 def crouch(skeleton, box_weight=100.0, **rates):
     """Hold a box with bent legs and back, the ground under the middle of mass."""
-    values = {name: value for name in skeleton.coordinates
-              for joint, value in BENT.items() if name in (joint, f'{joint}_r', f'{joint}_l')}
+    values = {
+        name: value
+        for name in skeleton.coordinates
+        for joint, value in BENT.items()
+        if name in (joint, f'{joint}_r', f'{joint}_l')
+    }
     q = skeleton.vector(values, skeleton.standing())
     motion = skeleton.body_motion([0.0], q, skeleton.vector(rates), np.zeros_like(q))
     box = 0.5 * (motion.point('hand_r') + motion.point('hand_l'))[0]
@@ -64,8 +68,12 @@ def test_signs_of_a_crouch_with_a_box(analyzer, kind):
     assert result.torque[0, column(result, 'lumbar_extension')] == pytest.approx(
         -analysis.net_moment_top_down[0, 1], rel=0.2
     )
-    for joint, sign in (('lumbar_extension', 1), ('arm_flex_r', 1), ('elbow_flex_l', 1),
-                        ('hip_flexion_r', -1)):
+    for joint, sign in (
+        ('lumbar_extension', 1),
+        ('arm_flex_r', 1),
+        ('elbow_flex_l', 1),
+        ('hip_flexion_r', -1),
+    ):
         assert sign * result.torque[0, column(result, joint)] > 5.0, joint
     assert np.all(result.lower <= 0.0) and np.all(result.upper >= 0.0)
     assert abs(result.torque[0, column(result, 'lumbar_bending')]) < 1.0
@@ -105,9 +113,11 @@ def test_sagittal_skeleton_has_one_limb_and_the_whole_trunk(analyzer):
     expected = limb.limits('knee_angle_l', knee, 0.0)
     assert expected[1] == pytest.approx(0.5 * pair.limits('knee_angle', knee, 0.0)[1])
     back = motion.position[0, skeleton.index('lumbar_extension')]
-    for joint, limits in (('knee_angle_l', expected),
-                          ('lumbar_extension', pair.limits('lumbar_extension', back, 0.0)),
-                          ('arm_add_r', limb.limits('arm_add_r', 0.0, 0.0))):
+    for joint, limits in (
+        ('knee_angle_l', expected),
+        ('lumbar_extension', pair.limits('lumbar_extension', back, 0.0)),
+        ('arm_add_r', limb.limits('arm_add_r', 0.0, 0.0)),
+    ):
         found = [side[0, column(result, joint)] for side in (result.lower, result.upper)]
         assert found == pytest.approx(limits), joint
 
@@ -122,8 +132,10 @@ def test_net_moment_is_taken_about_the_axes_of_the_pelvis(analyzer):
     result = analyzer.joint_torques(
         replace(analysis, net_moment_top_down=moment), replace(motion, frames=frames)
     )
-    found = {joint: result.torque[0, column(result, f'lumbar_{joint}')]
-             for joint in ('extension', 'bending', 'rotation')}
+    found = {
+        joint: result.torque[0, column(result, f'lumbar_{joint}')]
+        for joint in ('extension', 'bending', 'rotation')
+    }
     # Facing left: front is the laboratory's y, left its -x.
     assert found == pytest.approx({'extension': 1.0, 'bending': 2.0, 'rotation': 4.0})
 

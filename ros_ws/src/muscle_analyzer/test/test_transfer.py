@@ -61,8 +61,9 @@ def lift(skeleton, amplitudes, duration=2.0):
     shape = 0.5 * (1.0 - np.cos(wave * time))
     rate = 0.5 * wave * np.sin(wave * time)
     acceleration = 0.5 * wave**2 * np.cos(wave * time)
-    size = np.array([amplitudes.get(name, amplitudes.get(name[:-2], 0.0))
-                     for name in skeleton.coordinates])
+    size = np.array(
+        [amplitudes.get(name, amplitudes.get(name[:-2], 0.0)) for name in skeleton.coordinates]
+    )
     q = skeleton.standing() + np.outer(shape, size)
     return skeleton.body_motion(time, q, np.outer(rate, size), np.outer(acceleration, size))
 
@@ -138,9 +139,16 @@ def test_scaled_model_has_the_subjects_joint_distances(scaled, subject):
         ]
         return np.linalg.norm(place[0] - place[1])
 
-    for first, second in (('hip_r', 'hip_l'), ('hip_r', 'knee_r'), ('knee_l', 'ankle_l'),
-                          ('shoulder_r', 'elbow_r'), ('elbow_l', 'wrist_l'),
-                          ('wrist_r', 'hand_r'), ('pelvis', 'l5_s1'), ('heel_l', 'toe_l')):
+    for first, second in (
+        ('hip_r', 'hip_l'),
+        ('hip_r', 'knee_r'),
+        ('knee_l', 'ankle_l'),
+        ('shoulder_r', 'elbow_r'),
+        ('elbow_l', 'wrist_l'),
+        ('wrist_r', 'hand_r'),
+        ('pelvis', 'l5_s1'),
+        ('heel_l', 'toe_l'),
+    ):
         expected = np.linalg.norm(points[first] - points[second])
         assert ours(first, second) == pytest.approx(expected, abs=1e-6), (first, second)
     assert model.source.mass == pytest.approx(subject.mass)
@@ -219,9 +227,7 @@ def test_deep_pelvis_keeps_the_lumbosacral_joint(lifting_model, subject):
     places, factors = [], []
     for skeleton in (usual, deep):
         points = skeleton.points(np.zeros(len(skeleton.coordinates)))
-        scaled = subject_model(
-            lifting_model, points, skeleton.parameters.lengths, subject.mass
-        )
+        scaled = subject_model(lifting_model, points, skeleton.parameters.lengths, subject.mass)
         model = scaled.multibody
         at = upright_state(model).joint_position
         hips = 0.5 * (at[model.body_index('femur_r')] + at[model.body_index('femur_l')])
@@ -242,8 +248,10 @@ def test_sagittal_motion_may_stand_anywhere(scaled, subject, heading):
     frames = quaternion_from_matrix(turn @ matrix_from_quaternion(motion.frames))
     moved = replace(motion, points=motion.points @ turn.T + [1.0, -2.0, 0.0], frames=frames)
     here, there = (MotionTransfer(scaled, skeleton).step(m, 60) for m in (motion, moved))
-    pelvis = [scaled.multibody.coordinate_index(f'pelvis_{k}')
-              for k in ('tx', 'ty', 'tz', 'tilt', 'list', 'rotation')]
+    pelvis = [
+        scaled.multibody.coordinate_index(f'pelvis_{k}')
+        for k in ('tx', 'ty', 'tz', 'tilt', 'list', 'rotation')
+    ]
     inner = np.setdiff1d(np.arange(here.q.size), pelvis)
     for field in ('q', 'qd', 'qdd'):
         np.testing.assert_allclose(
@@ -272,8 +280,12 @@ def test_deep_postures_are_found_from_upright_standing(scaled, subject):
     points, frames = scaled.points.names, scaled.points.frame_names
     for _ in range(20):
         depth = rng.uniform()
-        values = {'pelvis_tilt': -rng.uniform(), 'lumbar_extension': -0.8 * rng.uniform(),
-                  'lumbar_rotation': rng.uniform(-0.3, 0.3), 'pelvis_rotation': rng.normal()}
+        values = {
+            'pelvis_tilt': -rng.uniform(),
+            'lumbar_extension': -0.8 * rng.uniform(),
+            'lumbar_rotation': rng.uniform(-0.3, 0.3),
+            'pelvis_rotation': rng.normal(),
+        }
         for side in ('_r', '_l'):
             values |= {
                 'arm_flex' + side: rng.uniform(-0.2, 1.8),

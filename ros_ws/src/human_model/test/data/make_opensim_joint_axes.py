@@ -16,16 +16,41 @@ import numpy as np
 import opensim
 
 PROBES = {
-    'pelvis_tx': 'pelvis', 'pelvis_ty': 'pelvis', 'pelvis_tz': 'pelvis', 'pelvis_tilt': 'pelvis',
-    'pelvis_list': 'pelvis', 'pelvis_rotation': 'pelvis', 'L5_S1_Flex_Ext': 'torso',
-    'L5_S1_Lat_Bending': 'torso', 'L5_S1_axial_rotation': 'torso',
+    'pelvis_tx': 'pelvis',
+    'pelvis_ty': 'pelvis',
+    'pelvis_tz': 'pelvis',
+    'pelvis_tilt': 'pelvis',
+    'pelvis_list': 'pelvis',
+    'pelvis_rotation': 'pelvis',
+    'L5_S1_Flex_Ext': 'torso',
+    'L5_S1_Lat_Bending': 'torso',
+    'L5_S1_axial_rotation': 'torso',
 }
 for _side in 'rl':
-    PROBES |= {f'{name}_{_side}': f'hand_{_side}' for name in (
-        'arm_flex', 'arm_add', 'arm_rot', 'elbow_flex', 'pro_sup', 'wrist_flex', 'wrist_dev')}
-    PROBES |= {f'{name}_{_side}': f'toes_{_side}' for name in (
-        'hip_flexion', 'hip_adduction', 'hip_rotation', 'knee_angle', 'ankle_angle',
-        'subtalar_angle', 'mtp_angle')}
+    PROBES |= {
+        f'{name}_{_side}': f'hand_{_side}'
+        for name in (
+            'arm_flex',
+            'arm_add',
+            'arm_rot',
+            'elbow_flex',
+            'pro_sup',
+            'wrist_flex',
+            'wrist_dev',
+        )
+    }
+    PROBES |= {
+        f'{name}_{_side}': f'toes_{_side}'
+        for name in (
+            'hip_flexion',
+            'hip_adduction',
+            'hip_rotation',
+            'knee_angle',
+            'ankle_angle',
+            'subtalar_angle',
+            'mtp_angle',
+        )
+    }
 STEP = 1e-3
 ROS = np.array([[1.0, 0, 0], [0, 0, -1.0], [0, 1.0, 0]])
 
@@ -41,8 +66,10 @@ def main() -> None:
     def pose(body: str) -> tuple[np.ndarray, np.ndarray]:
         model.realizePosition(state)
         frame = model.getBodySet().get(body).getTransformInGround(state)
-        return (np.array([frame.p().get(i) for i in range(3)]),
-                np.array([[frame.R().get(i, j) for j in range(3)] for i in range(3)]))
+        return (
+            np.array([frame.p().get(i) for i in range(3)]),
+            np.array([[frame.R().get(i, j) for j in range(3)] for i in range(3)]),
+        )
 
     lines = []
     for name, body in PROBES.items():
@@ -53,8 +80,16 @@ def main() -> None:
         place_after, turn_after = pose(body)
         coordinate.setValue(state, value)
         turned = turn_after @ turn.T
-        axis = np.array([turned[2, 1] - turned[1, 2], turned[0, 2] - turned[2, 0],
-                         turned[1, 0] - turned[0, 1]]) / 2
+        axis = (
+            np.array(
+                [
+                    turned[2, 1] - turned[1, 2],
+                    turned[0, 2] - turned[2, 0],
+                    turned[1, 0] - turned[0, 1],
+                ]
+            )
+            / 2
+        )
         kind = 'rotation' if np.linalg.norm(axis) > STEP / 100 else 'translation'
         vector = ROS @ (axis if kind == 'rotation' else place_after - place)
         vector /= np.linalg.norm(vector)

@@ -116,8 +116,13 @@ class ActivationIndex:
         return self.muscles[k], float(self.index[k]), float(self.time[k])
 
 
-def activation_index(time: FloatArray, muscles: Sequence[str], activation: FloatArray,
-                     solved: BoolArray, window: float = DEFAULT_WINDOW) -> ActivationIndex:
+def activation_index(
+    time: FloatArray,
+    muscles: Sequence[str],
+    activation: FloatArray,
+    solved: BoolArray,
+    window: float = DEFAULT_WINDOW,
+) -> ActivationIndex:
     """Find the activation index of every muscle over a lift.
 
     Parameters

@@ -56,21 +56,40 @@ _TABLE: dict[tuple[AlarmState, Trigger], AlarmState] = {
     (_S.SHELVED, _T.REMOVE_FROM_SERVICE): _S.OUT_OF_SERVICE,
     (_S.SUPPRESSED, _T.REMOVE_FROM_SERVICE): _S.OUT_OF_SERVICE,
 }
-_TABLE.update({
-    (state, trigger): target for state in ANNOUNCED_STATES for trigger, target in (
-        (_T.SHELVE, _S.SHELVED), (_T.SUPPRESS, _S.SUPPRESSED),
-        (_T.REMOVE_FROM_SERVICE, _S.OUT_OF_SERVICE))})
+_TABLE.update(
+    {
+        (state, trigger): target
+        for state in ANNOUNCED_STATES
+        for trigger, target in (
+            (_T.SHELVE, _S.SHELVED),
+            (_T.SUPPRESS, _S.SUPPRESSED),
+            (_T.REMOVE_FROM_SERVICE, _S.OUT_OF_SERVICE),
+        )
+    }
+)
 
-_CLEAR_PLAIN = {_S.UNACKNOWLEDGED_ACTIVE: _S.UNACKNOWLEDGED_RETURNED,
-                _S.ACKNOWLEDGED_ACTIVE: _S.NORMAL}
-_CLEAR_LATCHING = {_S.UNACKNOWLEDGED_ACTIVE: _S.LATCHED_UNACKNOWLEDGED,
-                   _S.ACKNOWLEDGED_ACTIVE: _S.LATCHED_ACKNOWLEDGED}
-_END_OF_SILENCE = {_T.UNSHELVE: _S.SHELVED, _T.UNSUPPRESS: _S.SUPPRESSED,
-                   _T.RETURN_TO_SERVICE: _S.OUT_OF_SERVICE}
+_CLEAR_PLAIN = {
+    _S.UNACKNOWLEDGED_ACTIVE: _S.UNACKNOWLEDGED_RETURNED,
+    _S.ACKNOWLEDGED_ACTIVE: _S.NORMAL,
+}
+_CLEAR_LATCHING = {
+    _S.UNACKNOWLEDGED_ACTIVE: _S.LATCHED_UNACKNOWLEDGED,
+    _S.ACKNOWLEDGED_ACTIVE: _S.LATCHED_ACKNOWLEDGED,
+}
+_END_OF_SILENCE = {
+    _T.UNSHELVE: _S.SHELVED,
+    _T.UNSUPPRESS: _S.SUPPRESSED,
+    _T.RETURN_TO_SERVICE: _S.OUT_OF_SERVICE,
+}
 
 
-def next_state(state: AlarmState, trigger: Trigger, latching: bool = False,
-               active: bool = False, tripped: bool = False) -> AlarmState:
+def next_state(
+    state: AlarmState,
+    trigger: Trigger,
+    latching: bool = False,
+    active: bool = False,
+    tripped: bool = False,
+) -> AlarmState:
     """Return the state after a trigger.
 
     Parameters

@@ -86,9 +86,11 @@ class AlarmEvent:
         unit = '' if self.unit == '1' else f' {self.unit}'
         digits = 2 if self.unit == '1' else 0
         about = f' ({self.detail})' if self.detail else ''
-        text = (f'{self.alarm}{about}: {self.previous_state.name} to {self.state.name} by '
-                f'{self.trigger.value}; value {self.value:.{digits}f}{unit}, limit '
-                f'{self.limit:.{digits}f}{unit}, margin {self.margin:.{digits}f}{unit}')
+        text = (
+            f'{self.alarm}{about}: {self.previous_state.name} to {self.state.name} by '
+            f'{self.trigger.value}; value {self.value:.{digits}f}{unit}, limit '
+            f'{self.limit:.{digits}f}{unit}, margin {self.margin:.{digits}f}{unit}'
+        )
         if self.operator:
             text += f'; by {self.operator}'
         if self.reason:

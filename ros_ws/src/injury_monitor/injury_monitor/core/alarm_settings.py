@@ -45,11 +45,11 @@ class AlarmSettings:
         non_negative(f'{self.alarm}.on_delay', self.on_delay)
         non_negative(f'{self.alarm}.off_delay', self.off_delay)
         if not 1 <= self.severity <= 1000:
-            raise InvalidInputError(f'{self.alarm}.severity', self.severity,
-                                    'must lie in 1 to 1000')
+            raise InvalidInputError(
+                f'{self.alarm}.severity', self.severity, 'must lie in 1 to 1000'
+            )
         if not 0.0 <= self.deadband < 1.0:
-            raise InvalidInputError(f'{self.alarm}.deadband', self.deadband,
-                                    'must lie in 0 to 1')
+            raise InvalidInputError(f'{self.alarm}.deadband', self.deadband, 'must lie in 0 to 1')
 
 
 def read_alarm_settings() -> tuple[AlarmSettings, ...]:
@@ -58,10 +58,18 @@ def read_alarm_settings() -> tuple[AlarmSettings, ...]:
     settings = []
     for row in read_table(_ALARMS, columns):
         if row['latching'] not in ('yes', 'no'):
-            raise DataFileError(_ALARMS, f"latching of {row['alarm']}", row['latching'],
-                                "must be 'yes' or 'no'")
-        settings.append(AlarmSettings(
-            row['alarm'], row['limit'], int(number(_ALARMS, row, 'severity')),
-            number(_ALARMS, row, 'on_delay'), number(_ALARMS, row, 'off_delay'),
-            number(_ALARMS, row, 'deadband'), row['latching'] == 'yes'))
+            raise DataFileError(
+                _ALARMS, f'latching of {row["alarm"]}', row['latching'], "must be 'yes' or 'no'"
+            )
+        settings.append(
+            AlarmSettings(
+                row['alarm'],
+                row['limit'],
+                int(number(_ALARMS, row, 'severity')),
+                number(_ALARMS, row, 'on_delay'),
+                number(_ALARMS, row, 'off_delay'),
+                number(_ALARMS, row, 'deadband'),
+                row['latching'] == 'yes',
+            )
+        )
     return tuple(settings)

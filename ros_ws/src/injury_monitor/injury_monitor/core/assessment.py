@@ -9,11 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from injury_monitor.core.activation_index import (
-    DEFAULT_WINDOW,
-    ActivationIndex,
-    activation_index,
-)
+from injury_monitor.core.activation_index import DEFAULT_WINDOW, ActivationIndex, activation_index
 from injury_monitor.core.exceptions import InvalidInputError
 from injury_monitor.core.limits import Limit, LimitSet, Zone, zone_meaning
 from injury_monitor.core.loads import LiftLoads
@@ -108,9 +104,15 @@ class RiskAssessment:
         return None
 
 
-def assess_lift(work: Work, limits: LimitSet, measured: LiftLoads,
-                predicted: LiftLoads | None = None, ends: LiftEnds | None = None,
-                window: float = DEFAULT_WINDOW, no_prediction: str = '') -> RiskAssessment:
+def assess_lift(
+    work: Work,
+    limits: LimitSet,
+    measured: LiftLoads,
+    predicted: LiftLoads | None = None,
+    ends: LiftEnds | None = None,
+    window: float = DEFAULT_WINDOW,
+    no_prediction: str = '',
+) -> RiskAssessment:
     """Assess one lift.
 
     Parameters
@@ -132,54 +134,84 @@ def assess_lift(work: Work, limits: LimitSet, measured: LiftLoads,
         If the two lifts do not belong together.
     """
     if predicted is not None and predicted.lift_id != measured.lift_id:
-        raise InvalidInputError('predicted.lift_id', predicted.lift_id,
-                                f'must be that of the measured lift, {measured.lift_id!r}')
+        raise InvalidInputError(
+            'predicted.lift_id',
+            predicted.lift_id,
+            f'must be that of the measured lift, {measured.lift_id!r}',
+        )
     criteria: list[Criterion] = []
     torques: dict[str, TorqueIndexPeaks] = {}
     activations: dict[str, ActivationIndex] = {}
     notes: list[str] = []
     if predicted is None:
-        notes.append('no predicted lift, the unnecessary part of the load is not known: '
-                     + (no_prediction or 'no reason was given'))
-    lifts = {'measured': measured} if predicted is None else {
-        'measured': measured, 'predicted': predicted}
+        notes.append(
+            'no predicted lift, the unnecessary part of the load is not known: '
+            + (no_prediction or 'no reason was given')
+        )
+    lifts = (
+        {'measured': measured}
+        if predicted is None
+        else {'measured': measured, 'predicted': predicted}
+    )
     for source, lift in lifts.items():
         criteria += _spine(work, limits, source, lift, notes)
         if lift.torques is None:
             notes.append(f'{source}: no joint torques')
         else:
             series = lift.torques
-            torques[source] = torque_index_peaks(series.time, series.joints, series.torque,
-                                                 series.lower, series.upper, series.solved)
+            torques[source] = torque_index_peaks(
+                series.time,
+                series.joints,
+                series.torque,
+                series.lower,
+                series.upper,
+                series.solved,
+            )
             joint, value, time = torques[source].worst()
-            criteria.append(_criterion(limits.torque_index, source, value,
-                                       time - lift.start, joint))
+            criteria.append(
+                _criterion(limits.torque_index, source, value, time - lift.start, joint)
+            )
         if lift.activations is None:
             notes.append(f'{source}: no muscle activations')
         else:
             held = lift.activations
-            activations[source] = activation_index(held.time, held.muscles, held.activation,
-                                                   held.solved, window)
+            activations[source] = activation_index(
+                held.time, held.muscles, held.activation, held.solved, window
+            )
             muscle, value, time = activations[source].worst()
-            criteria.append(_criterion(limits.activation_index, source, value,
-                                       time - lift.start, muscle))
+            criteria.append(
+                _criterion(limits.activation_index, source, value, time - lift.start, muscle)
+            )
     if not limits.shear_within_source:
-        notes.append(f'{limits.loads_per_day:g} loads a day are more than the shear limit was '
-                     f'published for ({limits.shear.loads_up_to:g})')
+        notes.append(
+            f'{limits.loads_per_day:g} loads a day are more than the shear limit was '
+            f'published for ({limits.shear.loads_up_to:g})'
+        )
     peaks = {entry.source: entry for entry in criteria if entry.criterion == 'compression_action'}
     shears = {entry.source: entry for entry in criteria if entry.criterion == limits.shear.name}
     zone = limits.zone(peaks['measured'].value)
     more_compression = _difference(peaks)
     lifting = assess_lifting(work, ends)
     return RiskAssessment(
-        measured.lift_id, work, limits, tuple(criteria), more_compression, _difference(shears),
-        torques, activations, lifting, zone,
+        measured.lift_id,
+        work,
+        limits,
+        tuple(criteria),
+        more_compression,
+        _difference(shears),
+        torques,
+        activations,
+        lifting,
+        zone,
         _summary(peaks['measured'], zone, more_compression, lifting),
-        sum(lift.left_out() for lift in lifts.values()), tuple(notes))
+        sum(lift.left_out() for lift in lifts.values()),
+        tuple(notes),
+    )
 
 
-def _spine(work: Work, limits: LimitSet, source: str, lift: LiftLoads,
-           notes: list[str]) -> list[Criterion]:
+def _spine(
+    work: Work, limits: LimitSet, source: str, lift: LiftLoads, notes: list[str]
+) -> list[Criterion]:
     values = {}
     for name, series in (('compression', lift.compression), ('shear', lift.anterior_shear)):
         if not np.any(lift.solved):
@@ -189,16 +221,37 @@ def _spine(work: Work, limits: LimitSet, source: str, lift: LiftLoads,
         values[name] = (float(series[k]), float(lift.time[k]) - lift.start)
     if not np.any(lift.solved):
         notes.append(f'{source}: no sample of the spine load was solved')
-    pairs = ((limits.compression_action, 'compression'),
-             (limits.compression_maximum, 'compression'), (limits.shear, 'shear'))
-    return [_criterion(limit, source, *values[name], per_kilogram=values[name][0]
-                       / work.body_mass) for limit, name in pairs]
+    pairs = (
+        (limits.compression_action, 'compression'),
+        (limits.compression_maximum, 'compression'),
+        (limits.shear, 'shear'),
+    )
+    return [
+        _criterion(limit, source, *values[name], per_kilogram=values[name][0] / work.body_mass)
+        for limit, name in pairs
+    ]
 
 
-def _criterion(limit: Limit, source: str, value: float, time: float, detail: str = '',
-               per_kilogram: float = math.nan) -> Criterion:
-    return Criterion(limit.name, source, value, limit.value, limit.margin(value), limit.unit,
-                     limit.source, time, per_kilogram, detail)
+def _criterion(
+    limit: Limit,
+    source: str,
+    value: float,
+    time: float,
+    detail: str = '',
+    per_kilogram: float = math.nan,
+) -> Criterion:
+    return Criterion(
+        limit.name,
+        source,
+        value,
+        limit.value,
+        limit.margin(value),
+        limit.unit,
+        limit.source,
+        time,
+        per_kilogram,
+        detail,
+    )
 
 
 def _difference(peaks: dict[str, Criterion]) -> float:
@@ -207,13 +260,14 @@ def _difference(peaks: dict[str, Criterion]) -> float:
     return peaks['measured'].value - peaks['predicted'].value
 
 
-def _summary(peak: Criterion, zone: Zone, unnecessary: float,
-             lifting: LiftingAssessment) -> str:
+def _summary(peak: Criterion, zone: Zone, unnecessary: float, lifting: LiftingAssessment) -> str:
     if zone is Zone.UNKNOWN:
         text = 'L5-S1 compression ' + zone_meaning(zone)
     else:
-        text = (f'Peak L5-S1 compression {peak.value:.0f} N ({peak.per_kilogram:.1f} N/kg), '
-                f'{zone_meaning(zone)}')
+        text = (
+            f'Peak L5-S1 compression {peak.value:.0f} N ({peak.per_kilogram:.1f} N/kg), '
+            f'{zone_meaning(zone)}'
+        )
     if unnecessary > 0.0:
         text += f'; {unnecessary:.0f} N of it were not necessary'
     elif not math.isnan(unnecessary):

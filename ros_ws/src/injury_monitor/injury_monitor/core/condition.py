@@ -63,8 +63,9 @@ class LimitCondition:
         [s].
     """
 
-    def __init__(self, limit: Limit, on_delay: float, off_delay: float, deadband: float,
-                 max_gap: float) -> None:
+    def __init__(
+        self, limit: Limit, on_delay: float, off_delay: float, deadband: float, max_gap: float
+    ) -> None:
         self.limit = limit
         self.on_delay = non_negative('on_delay', on_delay)
         self.off_delay = non_negative('off_delay', off_delay)

@@ -57,8 +57,11 @@ class LiftParts:
         if self.start is None:
             return False
         sources = (MEASURED,) if self.no_prediction else (MEASURED, PREDICTED)
-        return all(source in part for source in sources
-                   for part in (self.spine, self.torques, self.activations))
+        return all(
+            source in part
+            for source in sources
+            for part in (self.spine, self.torques, self.activations)
+        )
 
     def loads(self, source: str) -> LiftLoads | None:
         """Return the loads of one source, or None if there is no spine load."""
@@ -66,9 +69,16 @@ class LiftParts:
             return None
         spine = self.spine[source]
         start = self.start if self.start is not None else float(spine.time[0])
-        return LiftLoads(self.lift_id, start, spine.time, spine.compression,
-                         spine.anterior_shear, spine.solved, self.torques.get(source),
-                         self.activations.get(source))
+        return LiftLoads(
+            self.lift_id,
+            start,
+            spine.time,
+            spine.compression,
+            spine.anterior_shear,
+            spine.solved,
+            self.torques.get(source),
+            self.activations.get(source),
+        )
 
 
 class LiftCollector:
@@ -97,8 +107,11 @@ class LiftCollector:
         A lift whose waiting time is over without a measured spine load cannot be assessed; it is
         handed out too, so that the caller can say so.
         """
-        ready = [parts for parts in self._waiting.values()
-                 if parts.complete() or now - parts.since >= self.wait]
+        ready = [
+            parts
+            for parts in self._waiting.values()
+            if parts.complete() or now - parts.since >= self.wait
+        ]
         for parts in ready:
             del self._waiting[parts.lift_id]
             self._done.add(parts.lift_id)

@@ -76,8 +76,9 @@ class LiftingTask:
         if not 0.0 <= finite('asymmetry', self.asymmetry) <= 180.0:
             raise InvalidInputError('asymmetry', self.asymmetry, 'must lie in 0 to 180 deg')
         if not 0.0 < finite('duration_hours', self.duration_hours) <= _LONGEST_DURATION:
-            raise InvalidInputError('duration_hours', self.duration_hours,
-                                    'must lie in 0 (excluded) to 8 h')
+            raise InvalidInputError(
+                'duration_hours', self.duration_hours, 'must lie in 0 (excluded) to 8 h'
+            )
         if self.coupling not in tuple(Coupling):
             raise InvalidInputError('coupling', self.coupling, 'must be good, fair or poor')
 
@@ -132,16 +133,16 @@ def asymmetry_multiplier(asymmetry: float) -> float:
     return 0.0 if asymmetry > _A_MAX else 1.0 - _A_SLOPE * asymmetry
 
 
-def frequency_multiplier(lifts_per_minute: float, duration_hours: float,
-                         vertical: float) -> float:
+def frequency_multiplier(lifts_per_minute: float, duration_hours: float, vertical: float) -> float:
     """FM of NIOSH 94-110 table 5, linear between its rows, 0 beyond 15 lifts a minute.
 
     Durations: short up to 1 h, moderate up to 2 h, long up to 8 h; the recovery the shorter two
     ask for (1.2 and 0.3 times the work time) is the user's statement.
     """
-    duration = ('short' if duration_hours <= 1.0 else
-                'moderate' if duration_hours <= 2.0 else 'long')
-    column = f"{duration}_{'low' if vertical < _V_REFERENCE else 'high'}"
+    duration = (
+        'short' if duration_hours <= 1.0 else 'moderate' if duration_hours <= 2.0 else 'long'
+    )
+    column = f'{duration}_{"low" if vertical < _V_REFERENCE else "high"}'
     rows = read_table(_FREQUENCY_TABLE, ('lifts_per_minute', column))
     rates = [number(_FREQUENCY_TABLE, row, 'lifts_per_minute') for row in rows]
     values = [number(_FREQUENCY_TABLE, row, column) for row in rows]
@@ -179,10 +180,13 @@ def lifting_equation(task: LiftingTask, load: float) -> LiftingEquation:
     """
     mass = non_negative('load', load)
     multipliers = (
-        horizontal_multiplier(task.horizontal), vertical_multiplier(task.vertical),
-        distance_multiplier(task.distance), asymmetry_multiplier(task.asymmetry),
+        horizontal_multiplier(task.horizontal),
+        vertical_multiplier(task.vertical),
+        distance_multiplier(task.distance),
+        asymmetry_multiplier(task.asymmetry),
         frequency_multiplier(task.lifts_per_minute, task.duration_hours, task.vertical),
-        coupling_multiplier(task.coupling, task.vertical))
+        coupling_multiplier(task.coupling, task.vertical),
+    )
     limit = LOAD_CONSTANT * math.prod(multipliers)
     without_limit = math.inf if mass > 0.0 else 0.0
     index = mass / limit if limit > 0.0 else without_limit

@@ -70,13 +70,20 @@ def forward_direction(ankles: npt.ArrayLike) -> FloatArray:
     across = (left - right)[:2]
     length = float(np.hypot(*across))
     if length < 1e-6:
-        raise InvalidInputError('ankles', np.asarray(ankles).tolist(),
-                                'right and left are at the same place')
+        raise InvalidInputError(
+            'ankles', np.asarray(ankles).tolist(), 'right and left are at the same place'
+        )
     return np.array([across[1], -across[0]]) / length
 
 
-def lifting_task(end: LiftEnd, travel: float, forward: FloatArray, lifts_per_minute: float,
-                 duration_hours: float, coupling: Coupling) -> LiftingTask:
+def lifting_task(
+    end: LiftEnd,
+    travel: float,
+    forward: FloatArray,
+    lifts_per_minute: float,
+    duration_hours: float,
+    coupling: Coupling,
+) -> LiftingTask:
     """Return the task variables at one end of a lift.
 
     Parameters
@@ -102,5 +109,12 @@ def lifting_task(end: LiftEnd, travel: float, forward: FloatArray, lifts_per_min
     else:
         cosine = float(np.dot(reach, forward)) / distance
         asymmetry = math.degrees(math.acos(min(1.0, max(-1.0, cosine))))
-    return LiftingTask(100.0 * distance, 100.0 * float(end.grip[2]), 100.0 * abs(travel),
-                       asymmetry, lifts_per_minute, duration_hours, coupling)
+    return LiftingTask(
+        100.0 * distance,
+        100.0 * float(end.grip[2]),
+        100.0 * abs(travel),
+        asymmetry,
+        lifts_per_minute,
+        duration_hours,
+        coupling,
+    )

@@ -88,8 +88,12 @@ class LimitSet:
         """Return a limit by its name in ``data/limits.csv``, or ``shear_in_force``."""
         if name == 'shear_in_force':
             return self.shear
-        fixed = (self.compression_action, self.compression_maximum, self.torque_index,
-                 self.activation_index)
+        fixed = (
+            self.compression_action,
+            self.compression_maximum,
+            self.torque_index,
+            self.activation_index,
+        )
         for limit in fixed:
             if limit.name == name:
                 return limit
@@ -108,19 +112,23 @@ class LimitSet:
 
 def read_limits() -> dict[str, Limit]:
     """Read all limits of ``data/limits.csv`` by name."""
-    columns = ('limit', 'quantity', 'value', 'unit', 'loads_per_day_above',
-               'loads_per_day_up_to')
+    columns = ('limit', 'quantity', 'value', 'unit', 'loads_per_day_above', 'loads_per_day_up_to')
     limits: dict[str, Limit] = {}
     for row in read_table(_LIMITS, columns):
         value = number(_LIMITS, row, 'value')
         if not value > 0.0 or math.isinf(value):
-            raise DataFileError(_LIMITS, f"value of {row['limit']}", value, 'must be positive')
+            raise DataFileError(_LIMITS, f'value of {row["limit"]}', value, 'must be positive')
         if row['limit'] in limits:
             raise DataFileError(_LIMITS, 'limit', row['limit'], 'is there twice')
         limits[row['limit']] = Limit(
-            row['limit'], row['quantity'], value, row['unit'],
+            row['limit'],
+            row['quantity'],
+            value,
+            row['unit'],
             number(_LIMITS, row, 'loads_per_day_above', 0.0),
-            number(_LIMITS, row, 'loads_per_day_up_to', math.inf), row['source'])
+            number(_LIMITS, row, 'loads_per_day_up_to', math.inf),
+            row['source'],
+        )
     return limits
 
 
@@ -140,14 +148,20 @@ def limits_for(loads_per_day: float) -> LimitSet:
     """
     loads = non_negative('loads_per_day', loads_per_day)
     limits = read_limits()
-    shear = sorted((limit for limit in limits.values()
-                    if limit.quantity == 'l5_s1_anterior_shear'),
-                   key=lambda limit: limit.loads_up_to)
+    shear = sorted(
+        (limit for limit in limits.values() if limit.quantity == 'l5_s1_anterior_shear'),
+        key=lambda limit: limit.loads_up_to,
+    )
     within = [limit for limit in shear if loads <= limit.loads_up_to]
     return LimitSet(
-        limits['compression_action'], limits['compression_maximum'],
+        limits['compression_action'],
+        limits['compression_maximum'],
         within[0] if within else shear[-1],
-        limits['torque_index'], limits['activation_index'], loads, bool(within))
+        limits['torque_index'],
+        limits['activation_index'],
+        loads,
+        bool(within),
+    )
 
 
 def zone_meaning(zone: Zone) -> str:

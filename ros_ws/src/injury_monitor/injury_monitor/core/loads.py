@@ -32,8 +32,13 @@ def _series(owner: object, time: FloatArray, solved: BoolArray) -> None:
     object.__setattr__(owner, 'solved', flags)
 
 
-def _column(owner: object, field: str, shape: tuple[int, ...], solved: BoolArray,
-            may_be_unknown: bool = False) -> None:
+def _column(
+    owner: object,
+    field: str,
+    shape: tuple[int, ...],
+    solved: BoolArray,
+    may_be_unknown: bool = False,
+) -> None:
     """Check the shape of a field and that solved rows are finite."""
     name = f'{type(owner).__name__}.{field}'
     values = array(name, getattr(owner, field), shape)
@@ -67,8 +72,13 @@ class TorqueSeries:
         """Refuse wrong shapes and NaN in solved samples."""
         _series(self, self.time, self.solved)
         for field in ('torque', 'lower', 'upper'):
-            _column(self, field, (len(self.time), len(self.joints)), self.solved,
-                    may_be_unknown=field != 'torque')
+            _column(
+                self,
+                field,
+                (len(self.time), len(self.joints)),
+                self.solved,
+                may_be_unknown=field != 'torque',
+            )
 
 
 @dataclass(frozen=True)

@@ -33,8 +33,12 @@ from injury_monitor.core.work import Work
 # (engineering choice; ISA-18.2 asks for a limit and leaves its length to the plant).
 DEFAULT_MAX_SHELVE = 8 * 3600.0
 
-_QUANTITIES = ('l5_s1_compression', 'l5_s1_anterior_shear', 'joint_torque_index',
-               'activation_index')
+_QUANTITIES = (
+    'l5_s1_compression',
+    'l5_s1_anterior_shear',
+    'joint_torque_index',
+    'activation_index',
+)
 _STREAMS = ('spine_load', 'joint_torques', 'activations')
 
 
@@ -83,10 +87,15 @@ class InjuryMonitor:
         Occurrences announced earlier, for example from the journal.
     """
 
-    def __init__(self, station: str = 'station',
-                 settings: Iterable[AlarmSettings] | None = None,
-                 max_gap: float = DEFAULT_MAX_GAP, activation_window: float = DEFAULT_WINDOW,
-                 max_shelve: float = DEFAULT_MAX_SHELVE, known: Iterable[str] = ()) -> None:
+    def __init__(
+        self,
+        station: str = 'station',
+        settings: Iterable[AlarmSettings] | None = None,
+        max_gap: float = DEFAULT_MAX_GAP,
+        activation_window: float = DEFAULT_WINDOW,
+        max_shelve: float = DEFAULT_MAX_SHELVE,
+        known: Iterable[str] = (),
+    ) -> None:
         self.station = station
         self.settings = tuple(read_alarm_settings() if settings is None else settings)
         self.max_gap = positive('max_gap', max_gap)
@@ -115,8 +124,9 @@ class InjuryMonitor:
             limit = limits.by_name(settings.limit)
             alarm = self._alarms.get(settings.alarm)
             if alarm is None:
-                alarm = StationAlarm(settings, limit, self.station, work.recording,
-                                     self.max_gap, self.known)
+                alarm = StationAlarm(
+                    settings, limit, self.station, work.recording, self.max_gap, self.known
+                )
                 self._alarms[settings.alarm] = alarm
             else:
                 alarm.set_limit(limit, work.recording)
@@ -128,9 +138,15 @@ class InjuryMonitor:
         self.limits = limits
         return limits
 
-    def update_spine_load(self, stamp: float, compression: float, anterior_shear: float,
-                          solved: bool, lift_id: str = '',
-                          historical: bool = False) -> list[AlarmEvent]:
+    def update_spine_load(
+        self,
+        stamp: float,
+        compression: float,
+        anterior_shear: float,
+        solved: bool,
+        lift_id: str = '',
+        historical: bool = False,
+    ) -> list[AlarmEvent]:
         """Take one live sample of the L5-S1 load.
 
         Parameters
@@ -154,33 +170,51 @@ class InjuryMonitor:
         good = solved and math.isfinite(compression) and math.isfinite(anterior_shear)
         if not self._admit('spine_load', stamp, good, _QUANTITIES[:2]):
             return []
-        return (self._drive('l5_s1_compression',
-                            Sample(stamp, compression, lift_id, '', historical))
-                + self._drive('l5_s1_anterior_shear',
-                              Sample(stamp, anterior_shear, lift_id, '', historical)))
+        return self._drive(
+            'l5_s1_compression', Sample(stamp, compression, lift_id, '', historical)
+        ) + self._drive(
+            'l5_s1_anterior_shear', Sample(stamp, anterior_shear, lift_id, '', historical)
+        )
 
-    def update_joint_torques(self, stamp: float, joints: Sequence[str], torque: npt.ArrayLike,
-                             lower: npt.ArrayLike, upper: npt.ArrayLike, solved: bool,
-                             lift_id: str = '', historical: bool = False) -> list[AlarmEvent]:
+    def update_joint_torques(
+        self,
+        stamp: float,
+        joints: Sequence[str],
+        torque: npt.ArrayLike,
+        lower: npt.ArrayLike,
+        upper: npt.ArrayLike,
+        solved: bool,
+        lift_id: str = '',
+        historical: bool = False,
+    ) -> list[AlarmEvent]:
         """Take one live sample of the joint torques and their dynamic limits [N m], (n_j,).
 
         A joint whose limits are NaN (no published strength) is left out.
         """
         shape = (len(joints),)
-        values = [array(field, value, shape) for field, value in
-                  (('torque', torque), ('lower', lower), ('upper', upper))]
+        values = [
+            array(field, value, shape)
+            for field, value in (('torque', torque), ('lower', lower), ('upper', upper))
+        ]
         good = solved and all_finite(values[0])
         worst = worst_torque_index(*values) if good else None
         admitted = self._admit('joint_torques', stamp, worst is not None, _QUANTITIES[2:3])
         if not admitted or worst is None:
             return []
         k, index = worst
-        return self._drive('joint_torque_index', Sample(stamp, index, lift_id, joints[k],
-                                                        historical))
+        return self._drive(
+            'joint_torque_index', Sample(stamp, index, lift_id, joints[k], historical)
+        )
 
-    def update_activations(self, stamp: float, muscles: Sequence[str],
-                           activation: npt.ArrayLike, solved: bool, lift_id: str = '',
-                           historical: bool = False) -> list[AlarmEvent]:
+    def update_activations(
+        self,
+        stamp: float,
+        muscles: Sequence[str],
+        activation: npt.ArrayLike,
+        solved: bool,
+        lift_id: str = '',
+        historical: bool = False,
+    ) -> list[AlarmEvent]:
         """Take one live sample of the muscle activations [0..1], (n_m,)."""
         values = array('activation', activation, (len(muscles),))
         good = solved and len(muscles) > 0 and all_finite(values)
@@ -190,11 +224,19 @@ class InjuryMonitor:
         if mean is None:
             return []
         k = int(np.argmax(mean))
-        return self._drive('activation_index', Sample(stamp, float(mean[k]), lift_id,
-                                                      muscles[k], historical))
+        return self._drive(
+            'activation_index', Sample(stamp, float(mean[k]), lift_id, muscles[k], historical)
+        )
 
-    def command(self, trigger: Trigger, alarm: str, operator: str, reason: str = '',
-                duration: float = math.nan, stamp: float | None = None) -> list[AlarmEvent]:
+    def command(
+        self,
+        trigger: Trigger,
+        alarm: str,
+        operator: str,
+        reason: str = '',
+        duration: float = math.nan,
+        stamp: float | None = None,
+    ) -> list[AlarmEvent]:
         """Apply an operator's command to one alarm.
 
         Parameters
@@ -218,11 +260,13 @@ class InjuryMonitor:
         if alarm not in self._alarms:
             raise UnknownAlarmError(f'alarm {alarm!r} is not one of {sorted(self._alarms)}')
         if trigger is Trigger.SHELVE and not 0.0 < duration <= self.max_shelve:
-            raise ShelveDurationError('duration', duration,
-                                      f'must lie in 0 (excluded) to {self.max_shelve:g} s')
+            raise ShelveDurationError(
+                'duration', duration, f'must lie in 0 (excluded) to {self.max_shelve:g} s'
+            )
         latest = max(self._stamps.values(), default=0.0)
-        return self._alarms[alarm].command(trigger, latest if stamp is None else stamp, operator,
-                                           reason, duration)
+        return self._alarms[alarm].command(
+            trigger, latest if stamp is None else stamp, operator, reason, duration
+        )
 
     def states(self) -> dict[str, AlarmState]:
         """Return the state of every alarm."""
@@ -232,20 +276,25 @@ class InjuryMonitor:
         """Return how many raises were withheld because they had been announced before."""
         return sum(alarm.repeats_withheld for alarm in self._alarms.values())
 
-    def assess(self, measured: LiftLoads, predicted: LiftLoads | None = None,
-               ends: LiftEnds | None = None, no_prediction: str = '') -> RiskAssessment:
+    def assess(
+        self,
+        measured: LiftLoads,
+        predicted: LiftLoads | None = None,
+        ends: LiftEnds | None = None,
+        no_prediction: str = '',
+    ) -> RiskAssessment:
         """Assess one whole lift; see :func:`injury_monitor.core.assessment.assess_lift`."""
         work, limits = self._configured()
-        return assess_lift(work, limits, measured, predicted, ends, self.activation_window,
-                           no_prediction)
+        return assess_lift(
+            work, limits, measured, predicted, ends, self.activation_window, no_prediction
+        )
 
     def _configured(self) -> tuple[Work, LimitSet]:
         if self.work is None or self.limits is None:
             raise InjuryMonitorError('no person and task yet: call configure first')
         return self.work, self.limits
 
-    def _admit(self, stream: str, stamp: float, good: bool,
-               quantities: Sequence[str]) -> bool:
+    def _admit(self, stream: str, stamp: float, good: bool, quantities: Sequence[str]) -> bool:
         """Count a sample and say whether it may drive the alarms of its quantities."""
         self._configured()
         finite(f'{stream}.stamp', stamp)

@@ -81,17 +81,28 @@ def assess_lifting(work: Work, ends: LiftEnds | None) -> LiftingAssessment:
     try:
         forward = forward_direction(ends.origin.ankles)
         origin, destination = (
-            lifting_equation(lifting_task(end, travel, forward, work.lifts_per_minute,
-                                          work.duration_hours, work.coupling), work.box_mass)
-            for end in (ends.origin, ends.destination))
+            lifting_equation(
+                lifting_task(
+                    end, travel, forward, work.lifts_per_minute, work.duration_hours, work.coupling
+                ),
+                work.box_mass,
+            )
+            for end in (ends.origin, ends.destination)
+        )
     except InvalidInputError as error:
         return _without(str(error))
     governing, result = 'origin', origin
     if work.control_at_destination and destination.lifting_index > origin.lifting_index:
         governing, result = 'destination', destination
-    return LiftingAssessment(origin, destination, governing, result.lifting_index,
-                             result.recommended_weight_limit,
-                             lifting_index_band(result.lifting_index), '')
+    return LiftingAssessment(
+        origin,
+        destination,
+        governing,
+        result.lifting_index,
+        result.recommended_weight_limit,
+        lifting_index_band(result.lifting_index),
+        '',
+    )
 
 
 def _without(note: str) -> LiftingAssessment:

@@ -55,8 +55,15 @@ class StationAlarm:
         set comes from data seen before: it is withheld together with the return that follows.
     """
 
-    def __init__(self, settings: AlarmSettings, limit: Limit, station: str, recording: str,
-                 max_gap: float, known: set[str]) -> None:
+    def __init__(
+        self,
+        settings: AlarmSettings,
+        limit: Limit,
+        station: str,
+        recording: str,
+        max_gap: float,
+        known: set[str],
+    ) -> None:
         self.settings = settings
         self.station = station
         self.max_gap = max_gap
@@ -104,8 +111,14 @@ class StationAlarm:
         self._returned = edge.stamp
         return events + self._apply(Trigger.CLEAR, edge.stamp)
 
-    def command(self, trigger: Trigger, stamp: float, operator: str, reason: str = '',
-                duration: float = _NAN) -> list[AlarmEvent]:
+    def command(
+        self,
+        trigger: Trigger,
+        stamp: float,
+        operator: str,
+        reason: str = '',
+        duration: float = _NAN,
+    ) -> list[AlarmEvent]:
         """Apply an operator's command.
 
         Raises
@@ -120,8 +133,13 @@ class StationAlarm:
         return events
 
     def _new_condition(self, limit: Limit) -> LimitCondition:
-        return LimitCondition(limit, self.settings.on_delay, self.settings.off_delay,
-                              self.settings.deadband, self.max_gap)
+        return LimitCondition(
+            limit,
+            self.settings.on_delay,
+            self.settings.off_delay,
+            self.settings.deadband,
+            self.max_gap,
+        )
 
     def _end_of_shelving(self, sample: Sample) -> list[AlarmEvent]:
         if self.state is AlarmState.SHELVED and sample.stamp >= self.shelved_until:
@@ -129,12 +147,12 @@ class StationAlarm:
             return self._apply(Trigger.UNSHELVE, sample.stamp, reason='the time is over')
         return []
 
-    def _apply(self, trigger: Trigger, stamp: float, operator: str = '',
-               reason: str = '') -> list[AlarmEvent]:
+    def _apply(
+        self, trigger: Trigger, stamp: float, operator: str = '', reason: str = ''
+    ) -> list[AlarmEvent]:
         previous = self.state
         active = self.condition.active and not self._muted
-        self.state = next_state(previous, trigger, self.settings.latching, active,
-                                self._tripped)
+        self.state = next_state(previous, trigger, self.settings.latching, active, self._tripped)
         if self.state is previous:
             return []
         if trigger is Trigger.ACKNOWLEDGE:
@@ -142,9 +160,29 @@ class StationAlarm:
         if trigger is Trigger.RESET:
             self._tripped = False
         limit = self.condition.limit
-        return [AlarmEvent(
-            self._occurrence, self.settings.alarm, self.station, trigger, previous, self.state,
-            self.settings.severity, self._last.value, limit.value,
-            limit.margin(self._last.value), limit.unit, limit.source, stamp, self._onset,
-            self._raised, self._returned, self._acknowledged, self._last.lift_id,
-            self._last.detail, operator, reason, self._last.historical)]
+        return [
+            AlarmEvent(
+                self._occurrence,
+                self.settings.alarm,
+                self.station,
+                trigger,
+                previous,
+                self.state,
+                self.settings.severity,
+                self._last.value,
+                limit.value,
+                limit.margin(self._last.value),
+                limit.unit,
+                limit.source,
+                stamp,
+                self._onset,
+                self._raised,
+                self._returned,
+                self._acknowledged,
+                self._last.lift_id,
+                self._last.detail,
+                operator,
+                reason,
+                self._last.historical,
+            )
+        ]

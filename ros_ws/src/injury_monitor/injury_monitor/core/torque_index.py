@@ -56,8 +56,9 @@ def torque_index(torque: FloatArray, lower: FloatArray, upper: FloatArray) -> Fl
     return index
 
 
-def worst_torque_index(torque: FloatArray, lower: FloatArray,
-                       upper: FloatArray) -> tuple[int, float] | None:
+def worst_torque_index(
+    torque: FloatArray, lower: FloatArray, upper: FloatArray
+) -> tuple[int, float] | None:
     """Find the joint with the largest index in one sample; see :func:`torque_index`.
 
     In plain numbers: for the joints of one body, arithmetic of arrays takes longer to begin than
@@ -120,9 +121,14 @@ class TorqueIndexPeaks:
         return self.joints[k], float(self.peak[k]), float(self.time[k])
 
 
-def torque_index_peaks(time: FloatArray, joints: Sequence[str], torque: FloatArray,
-                       lower: FloatArray, upper: FloatArray,
-                       solved: BoolArray) -> TorqueIndexPeaks:
+def torque_index_peaks(
+    time: FloatArray,
+    joints: Sequence[str],
+    torque: FloatArray,
+    lower: FloatArray,
+    upper: FloatArray,
+    solved: BoolArray,
+) -> TorqueIndexPeaks:
     """Find the largest torque index of every joint.
 
     Parameters

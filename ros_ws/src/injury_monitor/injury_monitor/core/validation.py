@@ -13,7 +13,6 @@ import numpy.typing as npt
 from injury_monitor.core.exceptions import InvalidInputError
 
 FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
 
 #: So many values are summed by one thread; more may wait for several, longer than it takes.
 _FEW = 1000

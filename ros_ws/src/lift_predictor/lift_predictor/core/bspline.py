@@ -8,16 +8,14 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.exceptions import SplineError
 
 DEGREE = 3
 MIN_CONTROL_POINTS = 5
 REST: Final = {'velocity': 2, 'acceleration': 3}
 """What is zero at both ends, and how many control points are merged there for it."""
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

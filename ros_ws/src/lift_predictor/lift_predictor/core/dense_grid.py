@@ -7,9 +7,8 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from human_model.typing import Array
 
 DENSITY: Final = 10
 """Dense points per node interval."""

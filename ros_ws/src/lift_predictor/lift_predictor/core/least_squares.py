@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from human_model.typing import Array
 
 STEP: Final = 1e-7
 """Forward difference: the square root of the machine's precision, for unknowns of order 1."""

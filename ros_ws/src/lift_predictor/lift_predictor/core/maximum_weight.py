@@ -272,9 +272,7 @@ def _result(
     weight = best.box_mass * task.parameters.gravity
     programme = predictor.programme
     parameters = replace(task.parameters, box_mass=best.box_mass)
-    effort = total_effort(
-        programme.report, programme.grid, best.control, parameters
-    )
+    effort = total_effort(programme.report, programme.grid, best.control, parameters)
     own = Normalisation(effort, abs(math.log(weight + WEIGHT_OFFSET)), best.box_mass)
     return MaximumWeight(
         prediction=prediction,

@@ -8,11 +8,9 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.exceptions import TaskError
-
-Array = NDArray[np.float64]
 
 
 def pack_blocks(owner: object, shapes: Mapping[str, tuple[int, int]]) -> Array:

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.exceptions import TaskError
 from lift_predictor.core.maximum_weight import (
     MaximumWeight,
@@ -26,8 +26,6 @@ from lift_predictor.core.maximum_weight import (
 from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.sagittal.task import LiftTask2D
 from lift_predictor.core.solvers.optimum import Start
-
-Array = NDArray[np.float64]
 
 N_CASES: Final = 21
 """Pareto cases of section 2.5: w1 grows by 0.05."""

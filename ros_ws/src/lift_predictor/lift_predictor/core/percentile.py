@@ -16,7 +16,6 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from human_model.errors import HumanModelError
 from human_model.motion import Lift
@@ -34,8 +33,6 @@ from lift_predictor.core.sagittal.person import Person
 from lift_predictor.core.sagittal.starts import make_starts
 from lift_predictor.core.sagittal.task import Box, LiftTask2D
 from lift_predictor.core.solvers.optimum import Start
-
-Array = NDArray[np.float64]
 
 Z_STEP: Final = 0.05
 """Step of the enumeration: the dissertation gives its z-score (1.05) to this step."""

@@ -10,24 +10,19 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from human_model.anthropometry import SegmentParameters
 from human_model.errors import HumanModelError
 from human_model.motion import Lift
 from human_model.report import SolveReport, SolveStatus
 from human_model.subject import Subject
+from human_model.typing import Array
 from lift_predictor.core.exceptions import AsymmetricLiftError, TaskError, UnreachableError
 from lift_predictor.core.nearest_lift import HOPELESS, NearestLift, closer_lift, with_nearest
 from lift_predictor.core.options import IN_THE_PLANE, PredictorOptions
 from lift_predictor.core.sagittal.comparison import LiftComparison, compare
 from lift_predictor.core.sagittal.evaluation import evaluate, sample, total_effort
-from lift_predictor.core.sagittal.feasibility import (
-    as_nearest,
-    largest_mass,
-    missing_way,
-    way_to,
-)
+from lift_predictor.core.sagittal.feasibility import as_nearest, largest_mass, missing_way, way_to
 from lift_predictor.core.sagittal.lift_motion import body_motion, mtp_torque
 from lift_predictor.core.sagittal.optimiser import LiftOptimiser
 from lift_predictor.core.sagittal.outcome import judge
@@ -47,8 +42,6 @@ if TYPE_CHECKING:
     from lift_predictor.core.spatial.comparison import SpatialComparison
     from lift_predictor.core.spatial.prediction import PredictedLift3D
     from lift_predictor.core.spatial.predictor import SpatialPredictor
-
-Array = NDArray[np.float64]
 
 
 class LiftPredictor:
@@ -263,10 +256,9 @@ class LiftPredictor:
 
     def _over_lighter(
         self, task: LiftTask2D, vector: Array, starts: Sequence[Start], deadline: float
-    ) -> tuple[
-        tuple[Optimum, ...], Verification | None, NearestLift[PredictedLift2D] | None
-    ]:
+    ) -> tuple[tuple[Optimum, ...], Verification | None, NearestLift[PredictedLift2D] | None]:
         """Seek a lift that no start led to over lifts of less mass; or the nearest such lift."""
+
         def solve_lighter(other: LiftTask2D, starts: Sequence[Start]) -> PredictedLift2D:
             return self._solve(other, time.perf_counter(), starts, None, deadline)[0]
 

@@ -130,10 +130,7 @@ def facing_axis(
         The two disagree, or the direction is near no axis.
     """
     directions = {}
-    for name, back, front in (
-        ('feet', 'heel', 'toe'),
-        ('pelvis', 'pelvis_back', 'pelvis_front'),
-    ):
+    for name, back, front in (('feet', 'heel', 'toe'), ('pelvis', 'pelvis_back', 'pelvis_front')):
         start, end = roles.mean(positions, back), roles.mean(positions, front)
         if start is not None and end is not None:
             vector = _mean(end - start)

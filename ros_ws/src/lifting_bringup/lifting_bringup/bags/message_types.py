@@ -27,10 +27,7 @@ def interface_folder() -> Path:
     if beside.is_dir():
         return beside
     try:
-        from ament_index_python.packages import (
-            PackageNotFoundError,
-            get_package_share_directory,
-        )
+        from ament_index_python.packages import PackageNotFoundError, get_package_share_directory
     except ModuleNotFoundError as error:
         raise MessageTypeError(f'{_PACKAGE}: {beside} does not exist, no ament index') from error
     try:

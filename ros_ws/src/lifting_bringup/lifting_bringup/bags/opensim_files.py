@@ -14,14 +14,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lifting_bringup.bags.exceptions import FileFormatError
 from muscle_analyzer.core.exceptions import StorageError
 from muscle_analyzer.core.opensim import storage
 from muscle_analyzer.core.opensim.storage import Storage
-
-Array = NDArray[np.float64]
 
 _TRC_KEYS = ('DataRate', 'NumFrames', 'NumMarkers', 'Units')
 _TRC_LEADING_COLUMNS = 2
@@ -225,6 +223,4 @@ def read_storage(path: str | Path) -> Storage:
     try:
         return storage.read_storage(Path(path))
     except StorageError as error:
-        raise FileFormatError(
-            path, error.problem, line=error.line, field=error.column
-        ) from error
+        raise FileFormatError(path, error.problem, line=error.line, field=error.column) from error

@@ -109,9 +109,7 @@ class _Playback:
                 say(f'{name} is not played: {reason}')
                 continue
             publishers[name] = self._node.create_publisher(
-                message_class(topic.msgtype),
-                self._resolve(full),
-                publisher_profile(topic.qos),
+                message_class(topic.msgtype), self._resolve(full), publisher_profile(topic.qos)
             )
         return publishers
 

@@ -96,12 +96,7 @@ def load_streams(path: str | Path, namespace: str = '') -> BagStreams:
 class _Collector:
     """Gathers messages per topic, dropping those whose stamp does not increase."""
 
-    topics = (
-        *_LATCHED,
-        'markers',
-        'box/pose',
-        *(f'force_plates/{side}/wrench' for side in SIDES),
-    )
+    topics = (*_LATCHED, 'markers', 'box/pose', *(f'force_plates/{side}/wrench' for side in SIDES))
 
     def __init__(self, path: Path) -> None:
         self._path = path

@@ -281,8 +281,7 @@ def _recording(section: _Section) -> RecordingEntry:
     registration = section.text('plate_registration', AS_RECORDED)
     if registration not in (AS_RECORDED, QUIET_STANDING):
         raise section.error(
-            'plate_registration',
-            f'{registration!r} is neither {AS_RECORDED} nor {QUIET_STANDING}',
+            'plate_registration', f'{registration!r} is neither {AS_RECORDED} nor {QUIET_STANDING}'
         )
     entry = RecordingEntry(
         marker_set=section.text('marker_set', ''),

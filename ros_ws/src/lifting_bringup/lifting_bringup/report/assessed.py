@@ -24,16 +24,39 @@ def risk_from_assessment(message: Any) -> Risk:
     message : RiskAssessment
         Of ``lifting_interfaces``, or decoded with the same fields.
     """
-    columns = (message.criterion, message.source, message.value, message.limit, message.margin,
-               message.unit, message.limit_source, message.time_from_start)
+    columns = (
+        message.criterion,
+        message.source,
+        message.value,
+        message.limit,
+        message.margin,
+        message.unit,
+        message.limit_source,
+        message.time_from_start,
+    )
     rows = []
-    for name, source, value, limit, margin, unit, limit_source, time in zip(
-            *columns, strict=True):
-        rows.append(CriterionRow(name, source, float(value), float(limit), float(margin), unit,
-                                 limit_source, float(time), _detail(message, name, source)))
-    return Risk(tuple(rows), float(message.unnecessary_compression),
-                float(message.unnecessary_shear), Zone(message.zone).name.lower(),
-                message.summary, int(message.samples_left_out))
+    for name, source, value, limit, margin, unit, limit_source, time in zip(*columns, strict=True):
+        rows.append(
+            CriterionRow(
+                name,
+                source,
+                float(value),
+                float(limit),
+                float(margin),
+                unit,
+                limit_source,
+                float(time),
+                _detail(message, name, source),
+            )
+        )
+    return Risk(
+        tuple(rows),
+        float(message.unnecessary_compression),
+        float(message.unnecessary_shear),
+        Zone(message.zone).name.lower(),
+        message.summary,
+        int(message.samples_left_out),
+    )
 
 
 def _detail(message: Any, criterion: str, source: str) -> str:
@@ -46,8 +69,9 @@ def _detail(message: Any, criterion: str, source: str) -> str:
     return ''
 
 
-def lifting_from_assessment(message: Any, subject: Any, task: Any,
-                            measured_lift: Any) -> Lifting | Missing:
+def lifting_from_assessment(
+    message: Any, subject: Any, task: Any, measured_lift: Any
+) -> Lifting | Missing:
     """Return the lifting equation of an assessment with the task variables behind it.
 
     Parameters
@@ -61,15 +85,19 @@ def lifting_from_assessment(message: Any, subject: Any, task: Any,
         return Missing(message.lifting_index_note or 'no reason was given')
     return Lifting(
         tuple(float(value) for value in message.multipliers),
-        float(message.recommended_weight_limit), float(message.lifting_index),
-        message.limiting_multiplier, '',
-        _variables(float(message.lifting_index), subject, task, measured_lift))
+        float(message.recommended_weight_limit),
+        float(message.lifting_index),
+        message.limiting_multiplier,
+        '',
+        _variables(float(message.lifting_index), subject, task, measured_lift),
+    )
 
 
 def _variables(index: float, subject: Any, task: Any, measured_lift: Any) -> dict[str, str]:
     try:
-        assessed = assess_lifting(conversions.work_from_msg(subject, task),
-                                  conversions.ends_from_msg(measured_lift))
+        assessed = assess_lifting(
+            conversions.work_from_msg(subject, task), conversions.ends_from_msg(measured_lift)
+        )
     except InjuryMonitorError as error:
         return {'task variables': f'not available: {error}'}
     result = assessed.result()
@@ -77,8 +105,11 @@ def _variables(index: float, subject: Any, task: Any, measured_lift: Any) -> dic
         return {'task variables': 'not those of this index'}
     task_variables = result.task
     return {
-        'end': assessed.governing, 'H [cm]': f'{task_variables.horizontal:.0f}',
-        'V [cm]': f'{task_variables.vertical:.0f}', 'D [cm]': f'{task_variables.distance:.0f}',
+        'end': assessed.governing,
+        'H [cm]': f'{task_variables.horizontal:.0f}',
+        'V [cm]': f'{task_variables.vertical:.0f}',
+        'D [cm]': f'{task_variables.distance:.0f}',
         'A [deg]': f'{task_variables.asymmetry:.0f}',
         'F [1/min]': f'{task_variables.lifts_per_minute:g}',
-        'coupling': task_variables.coupling.name.lower()}
+        'coupling': task_variables.coupling.name.lower(),
+    }

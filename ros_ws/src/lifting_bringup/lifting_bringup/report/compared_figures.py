@@ -125,7 +125,10 @@ def muscle_activations(lifts: Two, source: str, name: str) -> str:
                     _say(axes, f'{lift.name}: not there', k)
                     continue
                 axes.plot(
-                    percent(course.time), course.activation, color=_COLOURS[k], ls=_DASHES[k],
+                    percent(course.time),
+                    course.activation,
+                    color=_COLOURS[k],
+                    ls=_DASHES[k],
                     label=lift.name,
                 )
             percent_axis(axes, j >= len(groups) * len(SIDES) - columns)
@@ -133,7 +136,7 @@ def muscle_activations(lifts: Two, source: str, name: str) -> str:
             axes.set_yticks((0.0, 0.5, 1.0))
             if j % columns == 0:
                 axes.set_ylabel('activation [1]')
-        for axes in panels[len(groups) * len(SIDES):]:
+        for axes in panels[len(groups) * len(SIDES) :]:
             axes.set_visible(False)
         figure_legend(figure, _labelled(panels))
         return to_svg(figure, name, f'Muscle activations of both lifts, {SOURCES[source]}')
@@ -176,5 +179,13 @@ def _labelled(panels: list[Axes]) -> Axes:
 
 
 def _say(axes: Axes, words: str, k: int) -> None:
-    axes.text(0.5, (0.55, 0.42)[k], words, ha='center', va='center', transform=axes.transAxes,
-              color=SOFT, fontsize=8)
+    axes.text(
+        0.5,
+        (0.55, 0.42)[k],
+        words,
+        ha='center',
+        va='center',
+        transform=axes.transAxes,
+        color=SOFT,
+        fontsize=8,
+    )

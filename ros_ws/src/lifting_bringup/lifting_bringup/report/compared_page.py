@@ -24,15 +24,7 @@ from lifting_bringup.report.compared import (
     share_beyond,
 )
 from lifting_bringup.report.data import Missing, Pair
-from lifting_bringup.report.html_parts import (
-    Card,
-    absent,
-    amount,
-    cards,
-    figure,
-    table,
-    text,
-)
+from lifting_bringup.report.html_parts import Card, absent, amount, cards, figure, table, text
 from lifting_bringup.report.loads import MuscleGroup, muscle_groups
 from lifting_bringup.report.model_limits import MODEL_LIMITS
 from lifting_bringup.report.page_style import CSS, SCRIPT
@@ -97,8 +89,10 @@ def _head(lifts: Two, title: str, created: str) -> str:
 
 def _person(lift: ComparedLift) -> str:
     header = lift.header
-    return (f'{text(header.subject)}, {text(header.sex)}, {amount(header.mass, "kg", 1)}, '
-            f'{amount(header.stature, "m", 2)}')
+    return (
+        f'{text(header.subject)}, {text(header.sex)}, {amount(header.mass, "kg", 1)}, '
+        f'{amount(header.stature, "m", 2)}'
+    )
 
 
 def _unequal(lifts: Two) -> str:
@@ -178,10 +172,7 @@ def _findings(lifts: Two) -> str:
 def _muscle_findings(lifts: Two, source: str, word: str) -> list[str]:
     changes, sides = [], []
     for group in muscle_groups():
-        peaks = [
-            [_muscle_peak(lift, source, group, side) for side in SIDES]
-            for lift in lifts
-        ]
+        peaks = [[_muscle_peak(lift, source, group, side) for side in SIDES] for lift in lifts]
         for k, side in enumerate(SIDES):
             change = peaks[1][k] - peaks[0][k]
             if not math.isnan(change):
@@ -195,7 +186,8 @@ def _muscle_findings(lifts: Two, source: str, word: str) -> list[str]:
     points = [
         f'{word.capitalize()}: of {len(changes)} muscles (left and right apart) {more} have a '
         f'higher peak activation in {text(lifts[1].name)}, {fewer} a lower one; most up '
-        f'{text(high[1])} ({_signed(high[0])}), most down {text(low[1])} ({_signed(low[0])}).']
+        f'{text(high[1])} ({_signed(high[0])}), most down {text(low[1])} ({_signed(low[0])}).'
+    ]
     uneven = max(sides, key=lambda pair: -1.0 if math.isnan(pair[0]) else abs(pair[0]))
     if not math.isnan(uneven[0]):
         points.append(
@@ -259,8 +251,11 @@ def _peak_rows(lifts: Two) -> list[list[str]]:
             for lift in lifts:
                 largest, at = _peak(lift, source, component)
                 peaks.append(largest)
-                row += [amount(largest, 'N'), amount(largest / lift.header.mass, 'N/kg', 1),
-                        amount(at, '%')]
+                row += [
+                    amount(largest, 'N'),
+                    amount(largest / lift.header.mass, 'N/kg', 1),
+                    amount(at, '%'),
+                ]
             change = peaks[1] - peaks[0]
             share = change / peaks[0] if component != 'lateral_shear' else math.nan
             rows.append([*row, amount(change, 'N'), amount(100.0 * share, '%', 1)])
@@ -268,8 +263,10 @@ def _peak_rows(lifts: Two) -> list[list[str]]:
 
 
 def _feet(lifts: Two) -> str:
-    caption = ('Of the ground on each foot. A lift predicted in the sagittal plane loads both '
-               'feet alike. ' + _reasons(lifts, 'ground'))
+    caption = (
+        'Of the ground on each foot. A lift predicted in the sagittal plane loads both '
+        'feet alike. ' + _reasons(lifts, 'ground')
+    )
     return '<h2>Ground reaction</h2>' + _drawn(
         lifts, 'ground', 'Vertical force on each foot',
         lambda: figures.foot_forces(lifts, 'feet'), caption)  # fmt: skip
@@ -296,8 +293,11 @@ def _muscles(lifts: Two) -> str:
             row = [text(group.name), side]
             for source in SOURCES:
                 peaks = [_muscle_peak(lift, source, group, side) for lift in lifts]
-                row += [amount(peaks[0], digits=2), amount(peaks[1], digits=2),
-                        _signed(peaks[1] - peaks[0])]
+                row += [
+                    amount(peaks[0], digits=2),
+                    amount(peaks[1], digits=2),
+                    _signed(peaks[1] - peaks[0]),
+                ]
             rows.append(row)
     return ''.join(parts) + '<h3>Peak activations</h3>' + table(head, rows, range(2, 8))
 

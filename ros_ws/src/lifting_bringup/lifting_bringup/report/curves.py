@@ -25,13 +25,22 @@ from lifting_bringup.report.style import (
 )
 
 _ANGLE_TITLES = {
-    'spine': 'Spine (flexion +)', 'shoulder': 'Shoulder (forward +)', 'elbow': 'Elbow (flexion +)',
-    'hip': 'Hip (flexion +)', 'knee': 'Knee (flexion +)', 'ankle': 'Ankle (dorsiflexion +)'}
+    'spine': 'Spine (flexion +)',
+    'shoulder': 'Shoulder (forward +)',
+    'elbow': 'Elbow (flexion +)',
+    'hip': 'Hip (flexion +)',
+    'knee': 'Knee (flexion +)',
+    'ankle': 'Ankle (dorsiflexion +)',
+}
 _TORQUE_TITLES = {
-    'lumbar_extension': 'Spine (extension +)', 'arm_flex': 'Shoulder (forward +)',
-    'elbow_flex': 'Elbow (flexion +)', 'hip_flexion': 'Hip (flexion +)',
-    'knee_angle': 'Knee (flexion +)', 'ankle_angle': 'Ankle (dorsiflexion +)',
-    'mtp_angle': 'Toes (dorsiflexion +)'}
+    'lumbar_extension': 'Spine (extension +)',
+    'arm_flex': 'Shoulder (forward +)',
+    'elbow_flex': 'Elbow (flexion +)',
+    'hip_flexion': 'Hip (flexion +)',
+    'knee_angle': 'Knee (flexion +)',
+    'ankle_angle': 'Ankle (dorsiflexion +)',
+    'mtp_angle': 'Toes (dorsiflexion +)',
+}
 _COLUMNS = 3
 
 
@@ -52,10 +61,21 @@ def joint_angles(pair: Pair[JointAngles], name: str) -> str:
                 x = percent(angles.time)
                 sides = np.degrees(np.stack([angles.right[:, k], angles.left[:, k]]))
                 if not np.allclose(sides[0], sides[1], equal_nan=True):
-                    axes.fill_between(x, sides.min(axis=0), sides.max(axis=0), alpha=0.18,
-                                      color=COLOURS[source], linewidth=0.0)
-                axes.plot(x, sides.mean(axis=0), color=COLOURS[source], ls=DASHES[source],
-                          label=LABELS[source])
+                    axes.fill_between(
+                        x,
+                        sides.min(axis=0),
+                        sides.max(axis=0),
+                        alpha=0.18,
+                        color=COLOURS[source],
+                        linewidth=0.0,
+                    )
+                axes.plot(
+                    x,
+                    sides.mean(axis=0),
+                    color=COLOURS[source],
+                    ls=DASHES[source],
+                    label=LABELS[source],
+                )
             percent_axis(axes, k >= _COLUMNS)
             if k % _COLUMNS == 0:
                 axes.set_ylabel('angle [deg]')
@@ -80,12 +100,23 @@ def ground_forces(pair: Pair[GroundForces], name: str, body_weight: float) -> st
         for source, ground in pair.present().items():
             x = percent(ground.time)
             for axes, axis in ((vertical, 2), (forward, 0)):
-                axes.plot(x, ground.force[:, :, axis].sum(axis=1), color=COLOURS[source],
-                          ls=DASHES[source], label=f'{LABELS[source]}, both feet')
+                axes.plot(
+                    x,
+                    ground.force[:, :, axis].sum(axis=1),
+                    color=COLOURS[source],
+                    ls=DASHES[source],
+                    label=f'{LABELS[source]}, both feet',
+                )
             if source == 'measured':
                 for side, style in ((0, '-.'), (1, ':')):
-                    vertical.plot(x, ground.force[:, side, 2], color=COLOURS[source], ls=style,
-                                  lw=1.1, label=f'recorded, {("right", "left")[side]} foot')
+                    vertical.plot(
+                        x,
+                        ground.force[:, side, 2],
+                        color=COLOURS[source],
+                        ls=style,
+                        lw=1.1,
+                        label=f'recorded, {("right", "left")[side]} foot',
+                    )
         vertical.axhline(body_weight, color=SOFT, lw=1.0, ls=(0, (1, 2)), label='body weight')
         vertical.set_ylim(bottom=min(0.0, vertical.get_ylim()[0]))
         for axes in (vertical, forward):
@@ -109,17 +140,31 @@ def joint_torques(pair: Pair[Torques], name: str) -> str:
                     continue
                 column = torques.joints.index(joint)
                 x = percent(torques.time)
-                for bound, label in ((_known(torques.lower), '_'), (
-                        _known(torques.upper), f'{LABELS[source]}, dynamic strength limit')):
-                    axes.plot(x, bound[:, column], color=COLOURS[source], lw=1.0, alpha=0.75,
-                              ls=(0, (1, 1.5)), label=label)
-                axes.plot(x, torques.torque[:, column], color=COLOURS[source],
-                          ls=DASHES[source], label=f'{LABELS[source]}, torque')
+                for bound, label in (
+                    (_known(torques.lower), '_'),
+                    (_known(torques.upper), f'{LABELS[source]}, dynamic strength limit'),
+                ):
+                    axes.plot(
+                        x,
+                        bound[:, column],
+                        color=COLOURS[source],
+                        lw=1.0,
+                        alpha=0.75,
+                        ls=(0, (1, 1.5)),
+                        label=label,
+                    )
+                axes.plot(
+                    x,
+                    torques.torque[:, column],
+                    color=COLOURS[source],
+                    ls=DASHES[source],
+                    label=f'{LABELS[source]}, torque',
+                )
             axes.axhline(0.0, color=SOFT, lw=0.8)
             percent_axis(axes, k >= len(joints) - _COLUMNS)
             if k % _COLUMNS == 0:
                 axes.set_ylabel('torque [N m]')
-        for axes in panels[len(joints):]:
+        for axes in panels[len(joints) :]:
             axes.set_visible(False)
         figure_legend(figure, panels[0])
         return to_svg(figure, name, 'Joint torques with dynamic strength limits')
@@ -135,8 +180,15 @@ def torque_indices(pair: Pair[Torques], name: str) -> str:
             axes.set_title(f'{LABELS[source].capitalize()} lift')
             _index_lines(axes, torques, index)
             axes.axhline(1.0, color=LIMIT, ls=(0, (6, 3)), lw=1.3)
-            axes.text(99.0, 1.0, 'whole dynamic strength (index 1)', ha='right', va='bottom',
-                      color=LIMIT, fontsize=8)
+            axes.text(
+                99.0,
+                1.0,
+                'whole dynamic strength (index 1)',
+                ha='right',
+                va='bottom',
+                color=LIMIT,
+                fontsize=8,
+            )
             percent_axis(axes)
             axes.set_ylim(0.0, max(1.15, axes.get_ylim()[1]))
         panels[0].set_ylabel('torque index [1]')
@@ -150,8 +202,14 @@ def _index_lines(axes: Axes, torques: Torques, index: Array) -> None:
     dashes: tuple[str | tuple[int, tuple[int, ...]], ...] = ('-', (0, (5, 2)), '-.', (0, (1, 1)))
     for k, joint in enumerate(torques.joints):
         if np.any(np.isfinite(index[:, k])):
-            axes.plot(x, index[:, k], color=SERIES[k % len(SERIES)],
-                      ls=dashes[k % len(dashes)], lw=1.6, label=_title(joint).split(' (')[0])
+            axes.plot(
+                x,
+                index[:, k],
+                color=SERIES[k % len(SERIES)],
+                ls=dashes[k % len(dashes)],
+                lw=1.6,
+                label=_title(joint).split(' (')[0],
+            )
 
 
 def _title(joint: str) -> str:
@@ -166,11 +224,13 @@ def _known(bound: Array) -> Array:
 def _index(torques: Torques) -> Array:
     """Return the torque index; NaN without published strength or where a fit changes its sign."""
     lower, upper = _known(torques.lower), _known(torques.upper)
-    index = torque_index(torques.torque, np.where(lower > 0.0, np.nan, lower),
-                         np.where(upper < 0.0, np.nan, upper))
+    index = torque_index(
+        torques.torque, np.where(lower > 0.0, np.nan, lower), np.where(upper < 0.0, np.nan, upper)
+    )
     return np.where(np.isfinite(index), index, np.nan)
 
 
 def _joints(pair: Pair[Torques]) -> list[str]:
-    return list(dict.fromkeys(
-        joint for torques in pair.present().values() for joint in torques.joints))
+    return list(
+        dict.fromkeys(joint for torques in pair.present().values() for joint in torques.joints)
+    )

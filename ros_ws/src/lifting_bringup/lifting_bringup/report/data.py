@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 import numpy as np
-import numpy.typing as npt
 
+from human_model.typing import Array, BoolArray
 from lifting_bringup.report.exceptions import ReportError
 from lifting_bringup.report.findings import (
     AlarmRow,
@@ -48,8 +48,6 @@ __all__ = [
     'Torques',
 ]
 
-Array = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
 T = TypeVar('T')
 
 #: The six joints of figures 4.10 and 4.11 of the thesis.
@@ -72,15 +70,19 @@ class Pair(Generic[T]):
 
     def present(self) -> dict[str, T]:
         """Return what is there, by source."""
-        return {source: part for source, part in
-                (('measured', self.measured), ('predicted', self.predicted))
-                if not isinstance(part, Missing)}
+        return {
+            source: part
+            for source, part in (('measured', self.measured), ('predicted', self.predicted))
+            if not isinstance(part, Missing)
+        }
 
     def missing(self) -> dict[str, str]:
         """Return the reasons for what is not there, by source."""
-        return {source: part.reason for source, part in
-                (('measured', self.measured), ('predicted', self.predicted))
-                if isinstance(part, Missing)}
+        return {
+            source: part.reason
+            for source, part in (('measured', self.measured), ('predicted', self.predicted))
+            if isinstance(part, Missing)
+        }
 
 
 @dataclass(frozen=True)
@@ -239,8 +241,14 @@ class SpineCurves:
 
     def __post_init__(self) -> None:
         """Check the shapes."""
-        for name in ('compression', 'anterior_shear', 'lateral_shear', 'solved',
-                     'compression_per_degree', 'anterior_shear_per_degree'):
+        for name in (
+            'compression',
+            'anterior_shear',
+            'lateral_shear',
+            'solved',
+            'compression_per_degree',
+            'anterior_shear_per_degree',
+        ):
             check(self, name, (len(self.time),))
 
 

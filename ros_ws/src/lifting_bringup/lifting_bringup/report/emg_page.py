@@ -41,9 +41,8 @@ def build_emg_page(matches: Sequence[EmgMatch], title: str, path: Path) -> Path:
     path : Path
         Of the HTML file.
     """
-    body = (
-        f'<h1>EMG and activations</h1><p class="lead">{text(title)}</p>'
-        + emg_part(EmgFindings(tuple(matches)), 'emg')
+    body = f'<h1>EMG and activations</h1><p class="lead">{text(title)}</p>' + emg_part(
+        EmgFindings(tuple(matches)), 'emg'
     )
     page = (
         '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8">'

@@ -32,8 +32,10 @@ def amount(value: float, unit: str = '', digits: int = 0) -> str:
 
 def absent(what: str, reason: str) -> str:
     """Return the box that stands where something is missing."""
-    return (f'<p class="absent"><strong>{text(what)}: not available.</strong> '
-            f'{text(reason) or "No reason was given."}</p>')
+    return (
+        f'<p class="absent"><strong>{text(what)}: not available.</strong> '
+        f'{text(reason) or "No reason was given."}</p>'
+    )
 
 
 @dataclass(frozen=True)
@@ -58,12 +60,16 @@ class Card:
 
     def render(self) -> str:
         """Return the HTML."""
-        rows = ''.join(f'<li><span>{name}</span><span>{value}</span></li>'
-                       for name, value in self.rows)
-        return (f'<div class="card {self.level}"><div class="what">{self.what}</div>'
-                f'<div class="value">{self.value}</div>'
-                f'<div class="verdict">{self.verdict}</div>'
-                + (f'<ul>{rows}</ul>' if rows else '') + '</div>')
+        rows = ''.join(
+            f'<li><span>{name}</span><span>{value}</span></li>' for name, value in self.rows
+        )
+        return (
+            f'<div class="card {self.level}"><div class="what">{self.what}</div>'
+            f'<div class="value">{self.value}</div>'
+            f'<div class="verdict">{self.verdict}</div>'
+            + (f'<ul>{rows}</ul>' if rows else '')
+            + '</div>'
+        )
 
 
 def cards(items: Iterable[Card]) -> str:
@@ -73,11 +79,10 @@ def cards(items: Iterable[Card]) -> str:
 
 def figure(title: str, svg: str, caption: str) -> str:
     """Return a figure with title and caption."""
-    return (f'<figure><h4>{text(title)}</h4>{svg}<figcaption>{caption}</figcaption></figure>')
+    return f'<figure><h4>{text(title)}</h4>{svg}<figcaption>{caption}</figcaption></figure>'
 
 
-def table(head: Sequence[str], rows: Iterable[Sequence[str]],
-          numbers: Sequence[int] = ()) -> str:
+def table(head: Sequence[str], rows: Iterable[Sequence[str]], numbers: Sequence[int] = ()) -> str:
     """Return a table.
 
     Parameters
@@ -87,13 +92,18 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]],
     numbers : sequence of int
         Columns that hold numbers.
     """
+
     def cells(tag: str, row: Sequence[str]) -> str:
-        return ''.join(f'<{tag}{" class=number" if k in numbers else ""}>{cell}</{tag}>'
-                       for k, cell in enumerate(row))
+        return ''.join(
+            f'<{tag}{" class=number" if k in numbers else ""}>{cell}</{tag}>'
+            for k, cell in enumerate(row)
+        )
 
     body = ''.join(f'<tr>{cells("td", row)}</tr>' for row in rows)
-    return (f'<div class="scroll"><table><thead><tr>{cells("th", head)}</tr></thead>'
-            f'<tbody>{body}</tbody></table></div>')
+    return (
+        f'<div class="scroll"><table><thead><tr>{cells("th", head)}</tr></thead>'
+        f'<tbody>{body}</tbody></table></div>'
+    )
 
 
 def pill(label: str, level: str) -> str:
@@ -103,5 +113,8 @@ def pill(label: str, level: str) -> str:
 
 def facts(pairs: Iterable[tuple[str, str]]) -> str:
     """Return a grid of names and values (HTML)."""
-    return '<dl class="facts">' + ''.join(
-        f'<div><dt>{text(name)}</dt><dd>{value}</dd></div>' for name, value in pairs) + '</dl>'
+    return (
+        '<dl class="facts">'
+        + ''.join(f'<div><dt>{text(name)}</dt><dd>{value}</dd></div>' for name, value in pairs)
+        + '</dl>'
+    )

@@ -19,8 +19,15 @@ from lifting_bringup.report.style import (
 
 #: Names of the joints on the page.
 TITLES = {
-    'l5_s1': 'L5-S1', 'l4_l5': 'L4-L5', 'l3_l4': 'L3-L4', 'l2_l3': 'L2-L3', 'l1_l2': 'L1-L2',
-    't12_l1': 'T12-L1', 'hip_r': 'hip, right', 'hip_l': 'hip, left', 'knee_r': 'knee, right',
+    'l5_s1': 'L5-S1',
+    'l4_l5': 'L4-L5',
+    'l3_l4': 'L3-L4',
+    'l2_l3': 'L2-L3',
+    'l1_l2': 'L1-L2',
+    't12_l1': 'T12-L1',
+    'hip_r': 'hip, right',
+    'hip_l': 'hip, left',
+    'knee_r': 'knee, right',
     'knee_l': 'knee, left',
 }
 
@@ -34,14 +41,20 @@ def joint_peaks(pair: Pair[JointLoads], name: str) -> str:
     with figure_style():
         figure, panels = new_figure(0.9 + 0.42 * len(joints), 1, 2)
         for axes, title, values in (
-                (panels[0], 'peak compression', lambda loads: loads.peak_compression),
-                (panels[1], 'peak shear, all directions', lambda loads: loads.peak_shear)):
+            (panels[0], 'peak compression', lambda loads: loads.peak_compression),
+            (panels[1], 'peak shear, all directions', lambda loads: loads.peak_shear),
+        ):
             axes.set_title(title)
             for k, (source, loads) in enumerate(present.items()):
                 peaks = values(loads)
                 at = place + (k - 0.5 * (len(present) - 1)) * height
-                axes.barh(at, np.nan_to_num(peaks), 0.9 * height, color=COLOURS[source],
-                          label=LABELS[source])
+                axes.barh(
+                    at,
+                    np.nan_to_num(peaks),
+                    0.9 * height,
+                    color=COLOURS[source],
+                    label=LABELS[source],
+                )
                 _write(axes, at, peaks)
             axes.set_yticks(place, [TITLES.get(joint, joint) for joint in joints])
             axes.invert_yaxis()
@@ -57,5 +70,11 @@ def _write(axes: Axes, places: Array, peaks: Array) -> None:
     """Write each peak beside its bar, and that there is none where no sample solved."""
     for y, peak in zip(places, peaks, strict=True):
         text = f'{peak:.0f}' if np.isfinite(peak) else 'none solved'
-        axes.annotate(text, (float(np.nan_to_num(peak)), y), xytext=(3, 0),
-                      textcoords='offset points', va='center', fontsize=7.5)
+        axes.annotate(
+            text,
+            (float(np.nan_to_num(peak)), y),
+            xytext=(3, 0),
+            textcoords='offset points',
+            va='center',
+            fontsize=7.5,
+        )

@@ -20,10 +20,12 @@ _DARK = """
   --series-5: #e0b34c; --series-6: #a5d8f5; --series-7: #b9bec5;
 """
 
-CSS = f"""
+CSS = (
+    f"""
 :root {{ color-scheme: light dark; {_LIGHT} }}
 @media (prefers-color-scheme: dark) {{ :root {{ {_DARK} }} }}
-""" + """
+"""
+    + """
 * { box-sizing: border-box; }
 body { margin: 0; background: var(--page); color: var(--ink);
   font: 15px/1.5 system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu Sans", sans-serif; }
@@ -93,7 +95,9 @@ details > summary .pill { margin-left: 10px; vertical-align: 2px; }
 .predicted { color: var(--predicted); font-weight: 600; }
 ul.plain { padding-left: 20px; max-width: 84ch; } ul.plain li { margin: 4px 0; }
 @media print {
-  :root {""" + _LIGHT + """ --page: #ffffff; color-scheme: light; }
+  :root {"""
+    + _LIGHT
+    + """ --page: #ffffff; color-scheme: light; }
   figure svg text { paint-order: stroke; stroke: var(--paper); stroke-width: 2.5px;
   stroke-linejoin: round; }
 main { max-width: none; padding: 0; } body { font-size: 11.5px; }
@@ -108,7 +112,10 @@ main { max-width: none; padding: 0; } body { font-size: 11.5px; }
 }
 @page { size: A4; margin: 14mm; }
 """
+)
 
 #: Opens every lift before printing, as closed ones would be left out.
-SCRIPT = ("addEventListener('beforeprint',()=>document.querySelectorAll('details')"
-          ".forEach(d=>{d.open=true}))")
+SCRIPT = (
+    "addEventListener('beforeprint',()=>document.querySelectorAll('details')"
+    '.forEach(d=>{d.open=true}))'
+)

@@ -60,8 +60,14 @@ def body(layer: str, names: tuple[str, ...], points: Array, colour: Colour) -> l
         Shape(layer, 0, Kind.LINES, ends, (BONE, 0.0, 0.0), colour),
         Shape(layer, 1, Kind.BALLS, points, (JOINT, JOINT, JOINT), colour),
         # A ball that ends at the vertex and is as high as head and neck less a third: the neck.
-        Shape(layer, 2, Kind.BALLS, head[1:] - (head[1:] - head[:1]) / 3.0,
-              (2.0 / 3.0 * size,) * 3, colour),
+        Shape(
+            layer,
+            2,
+            Kind.BALLS,
+            head[1:] - (head[1:] - head[:1]) / 3.0,
+            (2.0 / 3.0 * size,) * 3,
+            colour,
+        ),
     ]
 
 
@@ -70,8 +76,15 @@ def box(layer: str, place: Array, size: Array, orientation: Array) -> Shape:
     depth, width, height = size.tolist()
     if not np.all(np.isfinite(place)) or min(depth, width, height) <= 0.0:
         return nothing(layer, 0)
-    return Shape(layer, 0, Kind.BOX, place[None], (depth, width, height), colours()['box'],
-                 orientation=orientation)
+    return Shape(
+        layer,
+        0,
+        Kind.BOX,
+        place[None],
+        (depth, width, height),
+        colours()['box'],
+        orientation=orientation,
+    )
 
 
 def ground_forces(layer: str, force: Array, cop: Array, scale: float) -> list[Shape]:
@@ -89,8 +102,9 @@ def ground_forces(layer: str, force: Array, cop: Array, scale: float) -> list[Sh
     return shapes
 
 
-def compression(layer: str, place: Array, direction: Array, value: float,
-                scale: SpineScale) -> list[Shape]:
+def compression(
+    layer: str, place: Array, direction: Array, value: float, scale: SpineScale
+) -> list[Shape]:
     """Return arrow and number of the compression [N] of a disc at its place (3,) [m].
 
     `direction` (3,), of any length, points along the disc's normal towards the head. The arrow
@@ -103,8 +117,15 @@ def compression(layer: str, place: Array, direction: Array, value: float,
     tail = place + scale.length * abs(value) * along
     # A disc that is pulled apart has the arrow turned round.
     ends = (tail, place) if value >= 0.0 else (place, tail)
-    text = Shape(layer, 1, Kind.TEXT, (tail + LETTER * along)[None], (0.0, 0.0, LETTER), colour,
-                 f'{value:.0f} N')
+    text = Shape(
+        layer,
+        1,
+        Kind.TEXT,
+        (tail + LETTER * along)[None],
+        (0.0, 0.0, LETTER),
+        colour,
+        f'{value:.0f} N',
+    )
     return [_arrow(layer, 0, *ends, colour), text]
 
 
@@ -126,5 +147,6 @@ def path(layer: str, number: int, places: Array, colour: Colour) -> Shape:
 def _arrow(layer: str, number: int, tail: Array, tip: Array, colour: Colour) -> Shape:
     length = float(np.linalg.norm(tip - tail))
     head = min(4.0 * SHAFT, 0.5 * length)
-    return Shape(layer, number, Kind.ARROW, np.array([tail, tip]), (SHAFT, 2.0 * SHAFT, head),
-                 colour)
+    return Shape(
+        layer, number, Kind.ARROW, np.array([tail, tip]), (SHAFT, 2.0 * SHAFT, head), colour
+    )

@@ -48,9 +48,12 @@ class Ghost:
         if not np.any(known):
             return
         values = np.column_stack([loads.compression, loads.position, loads.normal])[known]
-        found = np.column_stack([
-            np.interp(self.motion.time, loads.time[known], column, np.nan, np.nan)
-            for column in values.T])
+        found = np.column_stack(
+            [
+                np.interp(self.motion.time, loads.time[known], column, np.nan, np.nan)
+                for column in values.T
+            ]
+        )
         self._compression, self._disc = found[:, 0], found[:, 1:]
 
     def sample(self, elapsed: float) -> int:
@@ -66,15 +69,26 @@ class Ghost:
         names = motion.point_names
         upright = np.array([0.0, 0.0, 0.0, 1.0])
         shapes = drawing.body(GHOST, names, points, colour)
-        shapes.append(drawing.label(GHOST, 3, points[names.index('head')],
-                                    f'optimal lift, {self.box_mass:.4g} kg', colour))
-        shapes += drawing.compression(GHOST_LOAD, self._disc[k, :3], self._disc[k, 3:],
-                                      float(self._compression[k]), scale)
+        shapes.append(
+            drawing.label(
+                GHOST,
+                3,
+                points[names.index('head')],
+                f'optimal lift, {self.box_mass:.4g} kg',
+                colour,
+            )
+        )
+        shapes += drawing.compression(
+            GHOST_LOAD, self._disc[k, :3], self._disc[k, 3:], float(self._compression[k]), scale
+        )
         shapes.append(drawing.box(GHOST_BOX, motion.box_position[k], box_size, upright))
         return shapes
 
 
 def no_ghost() -> list[Shape]:
     """Return what takes a ghost away."""
-    return [*(nothing(GHOST, k) for k in range(4)), *(nothing(GHOST_LOAD, k) for k in range(2)),
-            nothing(GHOST_BOX, 0)]
+    return [
+        *(nothing(GHOST, k) for k in range(4)),
+        *(nothing(GHOST_LOAD, k) for k in range(2)),
+        nothing(GHOST_BOX, 0),
+    ]

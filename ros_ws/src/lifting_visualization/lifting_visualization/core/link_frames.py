@@ -39,8 +39,10 @@ class LinkFrames:
         names = [prefix + name for name in body_names(skeleton)]
         self.children = tuple(names)
         self.parents = tuple(names[int(p)] if p >= 0 else WORLD for p in tree.parent)
-        self.fixed = tuple((prefix + link, prefix + segment, place)
-                           for segment, (link, place) in fixed_segments(skeleton).items())
+        self.fixed = tuple(
+            (prefix + link, prefix + segment, place)
+            for segment, (link, place) in fixed_segments(skeleton).items()
+        )
         self._coordinates = skeleton.coordinates
         self._slides = (tree.kind == PRISMATIC)[:, None]
         self._offset, self._axis = tree.offset, tree.axis
@@ -61,8 +63,10 @@ class LinkFrames:
             If the coordinates are others.
         """
         if coordinates != self._coordinates:
-            raise PictureError(f'body_motion.coordinate_names: {len(coordinates)} names, not the '
-                               f'{len(self._coordinates)} of the skeleton')
+            raise PictureError(
+                f'body_motion.coordinate_names: {len(coordinates)} names, not the '
+                f'{len(self._coordinates)} of the skeleton'
+            )
         value = position[:, None]
         half = 0.5 * value
         found = np.empty((len(position), 7))

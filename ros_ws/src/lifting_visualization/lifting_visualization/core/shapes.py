@@ -8,11 +8,9 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 import numpy as np
-import numpy.typing as npt
 
+from human_model.typing import Array
 from lifting_visualization.core.tables import Colour
-
-Array = npt.NDArray[np.float64]
 
 
 class Kind(Enum):

@@ -35,5 +35,6 @@ class SpineLoads(NamedTuple):
     def normal(self) -> Array:
         """Unit vectors (n, 3) along the disc's normal, towards the head."""
         x, y, z, w = self.orientation.T
-        return np.stack([2.0 * (x * z + y * w), 2.0 * (y * z - x * w),
-                         1.0 - 2.0 * (x * x + y * y)], axis=1)
+        return np.stack(
+            [2.0 * (x * z + y * w), 2.0 * (y * z - x * w), 1.0 - 2.0 * (x * x + y * y)], axis=1
+        )

@@ -109,8 +109,13 @@ class Visualizer:
         if not self._due(now, self._load_drawn):
             return []
         self._load_drawn = self._load_stamp = now
-        return drawing.compression(SPINE, loads.position[-1], loads.normal[-1],
-                                   float(loads.compression[-1]), self.options.compression)
+        return drawing.compression(
+            SPINE,
+            loads.position[-1],
+            loads.normal[-1],
+            float(loads.compression[-1]),
+            self.options.compression,
+        )
 
     def transforms(self, motion: BodyMotion) -> Array | None:
         """Return the places (n_q, 7) of the links in the last sample; None without a person.
@@ -139,15 +144,18 @@ class Visualizer:
         if not self._due(now, self._drawn):
             return []
         self._drawn = now
-        shapes = drawing.body(PERSON, names, points,
-                              colours()['person' if status == 0 else 'not_solved'])
-        shapes.append(drawing.box(BOX, motion.box_position[-1], self._box_size,
-                                  self._box_orientation))
+        shapes = drawing.body(
+            PERSON, names, points, colours()['person' if status == 0 else 'not_solved']
+        )
+        shapes.append(
+            drawing.box(BOX, motion.box_position[-1], self._box_size, self._box_orientation)
+        )
         if status != 0:
             shapes += [nothing(GROUND, k) for k in range(2)]
         else:
-            shapes += drawing.ground_forces(GROUND, motion.ground_force[-1], motion.cop[-1],
-                                            self.options.force_length)
+            shapes += drawing.ground_forces(
+                GROUND, motion.ground_force[-1], motion.cop[-1], self.options.force_length
+            )
         if abs(now - self._load_stamp) > self.options.fresh:
             shapes += [nothing(SPINE, k) for k in range(2)]
         return shapes
@@ -160,8 +168,9 @@ class Visualizer:
         """Return the path of the hands in a recorded lift."""
         return [drawing.path(PATHS, MEASURED, grips(lift.motion), colours()['person'])]
 
-    def set_predicted(self, lift_id: str, motion: BodyMotion | None,
-                      box_mass: float) -> list[Shape]:
+    def set_predicted(
+        self, lift_id: str, motion: BodyMotion | None, box_mass: float
+    ) -> list[Shape]:
         """Take a predicted lift, None if there is none; return what changes at once."""
         if motion is None:
             self.ghost = None

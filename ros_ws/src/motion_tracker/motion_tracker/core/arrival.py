@@ -33,8 +33,7 @@ class Arrival:
         it lacks.
     """
 
-    def __init__(self, wait: float, longest_gap: float, clock: Callable[[], float] | None,
-                 ) -> None:
+    def __init__(self, wait: float, longest_gap: float, clock: Callable[[], float] | None) -> None:
         self.absent: set[str] = set()
         self._wait = wait
         self._longest_gap = longest_gap
@@ -51,8 +50,14 @@ class Arrival:
             self._last = now
         return self._elapsed
 
-    def ready(self, stamp: float, arrived: float, newest: float,
-              streams: Sequence[SampledStream], final: bool) -> tuple[bool, list[Output]]:
+    def ready(
+        self,
+        stamp: float,
+        arrived: float,
+        newest: float,
+        streams: Sequence[SampledStream],
+        final: bool,
+    ) -> tuple[bool, list[Output]]:
         """Whether a frame may be worked off, and what is to be said of the streams.
 
         Parameters
@@ -80,7 +85,10 @@ class Arrival:
             if final and newest - stream.last <= self._longest_gap:
                 continue
             self.absent.add(stream.name)
-            said.append(Notice(
-                f'{stream.name}: no samples {"at all" if stream.empty else "any more"} at '
-                f'{stamp:.3f} s; going on without'))
+            said.append(
+                Notice(
+                    f'{stream.name}: no samples {"at all" if stream.empty else "any more"} at '
+                    f'{stamp:.3f} s; going on without'
+                )
+            )
         return True, said

@@ -20,6 +20,7 @@ import numpy.typing as npt
 from human_model.anthropometry import segment_lengths
 from human_model.skeleton_3d import Skeleton3D
 from human_model.subject import Calibration, Subject
+from human_model.typing import Array
 from motion_tracker.core.errors import CalibrationError
 from motion_tracker.core.ik_types import IKSettings
 from motion_tracker.core.inverse_kinematics import InverseKinematics
@@ -33,8 +34,6 @@ from motion_tracker.core.marker_model import MarkerModel, from_calibration
 from motion_tracker.core.marker_set import MarkerSet
 from motion_tracker.core.segment_measures import measured_lengths
 
-Array = npt.NDArray[np.float64]
-
 #: Weight of a joint centre in the fit of the posture, against 1 or 2 of a landmark.
 CENTRE_WEIGHT = 10.0
 
@@ -42,17 +41,36 @@ CENTRE_WEIGHT = 10.0
 ANKLE_WEIGHT = 1000.0
 
 #: Coordinates that are zero in the static trial, and the weight that holds them there [m^2/rad^2].
-STRAIGHT = ('lumbar_extension', 'lumbar_bending', 'lumbar_rotation', 'thorax_extension',
-            'thorax_bending', 'thorax_rotation', 'wrist_flex_r', 'wrist_dev_r', 'wrist_flex_l',
-            'wrist_dev_l', 'mtp_angle_r', 'mtp_angle_l')
+STRAIGHT = (
+    'lumbar_extension',
+    'lumbar_bending',
+    'lumbar_rotation',
+    'thorax_extension',
+    'thorax_bending',
+    'thorax_rotation',
+    'wrist_flex_r',
+    'wrist_dev_r',
+    'wrist_flex_l',
+    'wrist_dev_l',
+    'mtp_angle_r',
+    'mtp_angle_l',
+)
 STRAIGHT_WEIGHT = 10.0
 
 #: A static trial whose markers move more than this (standard deviation) is not static [m].
 LARGEST_SWAY = 0.02
 
 #: The trunk's lengths, which are scaled together.
-_TRUNK = ('sacrum_forward', 'sacrum_height', 't12l1_forward', 't12l1_height', 'shoulder_forward',
-          'shoulder_height', 'c7_forward', 'c7_height')
+_TRUNK = (
+    'sacrum_forward',
+    'sacrum_height',
+    't12l1_forward',
+    't12l1_height',
+    'shoulder_forward',
+    'shoulder_height',
+    'c7_forward',
+    'c7_height',
+)
 
 #: Marker on the spinous process of C7, in all sets; its height gives that of the neck's joint.
 _NECK = 'C7'
@@ -88,8 +106,9 @@ class StaticCalibration:
     statements: tuple[str, ...]
 
 
-def calibrate(marker_set: MarkerSet, names: Sequence[str], positions: npt.ArrayLike,
-              subject: Subject) -> StaticCalibration:
+def calibrate(
+    marker_set: MarkerSet, names: Sequence[str], positions: npt.ArrayLike, subject: Subject
+) -> StaticCalibration:
     """Calibrate from a static trial.
 
     Parameters
@@ -110,12 +129,14 @@ def calibrate(marker_set: MarkerSet, names: Sequence[str], positions: npt.ArrayL
     """
     array = np.asarray(positions, dtype=np.float64)
     if array.ndim != 3 or array.shape[1:] != (len(names), 3) or not len(array):
-        raise CalibrationError(f'static trial: positions (frames, {len(names)}, 3) are needed, '
-                               f'got {array.shape}')
+        raise CalibrationError(
+            f'static trial: positions (frames, {len(names)}, 3) are needed, got {array.shape}'
+        )
     mean = _mean_positions(names, array)
     known = {name: mean[name] for name in mean if name in marker_set.names}
-    statements = [f'static trial of {len(array)} frames, {len(known)} markers of '
-                  f'{marker_set.name}']
+    statements = [
+        f'static trial of {len(array)} frames, {len(known)} markers of {marker_set.name}'
+    ]
     ignored = sorted(set(mean) - set(known))
     if ignored:
         statements.append(f'markers not in {marker_set.name}, ignored: {", ".join(ignored)}')
@@ -132,16 +153,22 @@ def calibrate(marker_set: MarkerSet, names: Sequence[str], positions: npt.ArrayL
         skeleton = Skeleton3D.of(replace(person, lengths={**lengths, **subject.lengths}))
     tracked = [m for m in marker_set.markers if m.tracking and m.name in known]
     offsets = np.array([_local(skeleton, posture, m.segment, known[m.name]) for m in tracked])
-    draft = Calibration(tuple(m.name for m in tracked), tuple(m.segment for m in tracked), offsets,
-                        lengths)
+    draft = Calibration(
+        tuple(m.name for m in tracked), tuple(m.segment for m in tracked), offsets, lengths
+    )
     residual = _residual(skeleton, draft, marker_set, names, array, posture)
-    statements += [f'{d.joint}: {d.method.replace("_", " ")} of {" ".join(d.markers)} '
-                   f'({d.source})' for d in definitions]
-    statements.append(f'landmarks against anatomy: {1000 * rms:.1f} mm rms, '
-                      f'{1000 * worst:.1f} mm at most; calibrated model in the trial: '
-                      f'{1000 * residual:.1f} mm rms')
-    return StaticCalibration(replace(draft, residual_rms=residual), posture, rms, worst, centres,
-                             tuple(statements))
+    statements += [
+        f'{d.joint}: {d.method.replace("_", " ")} of {" ".join(d.markers)} ({d.source})'
+        for d in definitions
+    ]
+    statements.append(
+        f'landmarks against anatomy: {1000 * rms:.1f} mm rms, '
+        f'{1000 * worst:.1f} mm at most; calibrated model in the trial: '
+        f'{1000 * residual:.1f} mm rms'
+    )
+    return StaticCalibration(
+        replace(draft, residual_rms=residual), posture, rms, worst, centres, tuple(statements)
+    )
 
 
 def _local(skeleton: Skeleton3D, posture: Array, segment: str, point: Array) -> Array:
@@ -152,8 +179,10 @@ def _local(skeleton: Skeleton3D, posture: Array, segment: str, point: Array) -> 
 
 def _mean_positions(names: Sequence[str], array: Array) -> dict[str, Array]:
     if np.nanmax(np.abs(array)) > 50.0:
-        raise CalibrationError(f'static trial: a coordinate is {np.nanmax(np.abs(array)):.0f} m; '
-                               'the markers seem to be in millimetres')
+        raise CalibrationError(
+            f'static trial: a coordinate is {np.nanmax(np.abs(array)):.0f} m; '
+            'the markers seem to be in millimetres'
+        )
     mean = {}
     for i, name in enumerate(names):
         seen = array[np.all(np.isfinite(array[:, i]), axis=1), i]
@@ -161,16 +190,21 @@ def _mean_positions(names: Sequence[str], array: Array) -> dict[str, Array]:
             continue
         sway = float(seen.std(axis=0).max())
         if sway > LARGEST_SWAY:
-            raise CalibrationError(f'static trial: marker {name!r} moves, its standard deviation '
-                                   f'is {1000 * sway:.0f} mm, more than '
-                                   f'{1000 * LARGEST_SWAY:.0f} mm')
+            raise CalibrationError(
+                f'static trial: marker {name!r} moves, its standard deviation '
+                f'is {1000 * sway:.0f} mm, more than '
+                f'{1000 * LARGEST_SWAY:.0f} mm'
+            )
         mean[name] = seen.mean(axis=0)
     return mean
 
 
-def _measure(marker_set: MarkerSet, definitions: tuple[JointDefinition, ...],
-             markers: Mapping[str, Array], person: Subject,
-             ) -> tuple[dict[str, float], dict[str, Array]]:
+def _measure(
+    marker_set: MarkerSet,
+    definitions: tuple[JointDefinition, ...],
+    markers: Mapping[str, Array],
+    person: Subject,
+) -> tuple[dict[str, float], dict[str, Array]]:
     """Segment lengths [m] and joint centres [m] of the trial."""
     predicted = segment_lengths(person)[0]
     placed = marker_set.positions(predicted)
@@ -185,31 +219,46 @@ def _measure(marker_set: MarkerSet, definitions: tuple[JointDefinition, ...],
     for definition in shoulders:
         marker = placed[definition.markers[0]]
         sign = 1.0 if definition.joint[-1] == 'l' else -1.0
-        joint = np.array([predicted['shoulder_forward'], sign * predicted['shoulder_half_width'],
-                          predicted['shoulder_height']])
+        joint = np.array(
+            [
+                predicted['shoulder_forward'],
+                sign * predicted['shoulder_half_width'],
+                predicted['shoulder_height'],
+            ]
+        )
         below[definition.joint] = heading @ (joint - marker)
         breadth.append(marker[1])
     centres |= joint_centres(shoulders, markers, below)
 
     def between(a: str, b: str) -> float:
-        return float(np.mean([np.linalg.norm(centres[f'{a}_{s}'] - centres[f'{b}_{s}'])
-                              for s in 'rl']))
+        return float(
+            np.mean([np.linalg.norm(centres[f'{a}_{s}'] - centres[f'{b}_{s}']) for s in 'rl'])
+        )
 
     lengths = {
         'hip_half_width': float(np.linalg.norm(centres['hip_r'] - centres['hip_l'])) / 2,
-        'thigh': between('hip', 'knee'), 'shank': between('knee', 'ankle'),
-        'upper_arm': between('shoulder', 'elbow'), 'forearm': between('elbow', 'wrist'),
-        'shoulder_half_width':
-            float(np.linalg.norm(centres['shoulder_r'] - centres['shoulder_l'])) / 2,
+        'thigh': between('hip', 'knee'),
+        'shank': between('knee', 'ankle'),
+        'upper_arm': between('shoulder', 'elbow'),
+        'forearm': between('elbow', 'wrist'),
+        'shoulder_half_width': float(np.linalg.norm(centres['shoulder_r'] - centres['shoulder_l']))
+        / 2,
     }
-    trunk = float(np.linalg.norm(centres['shoulder_r'] + centres['shoulder_l']
-                                 - centres['hip_r'] - centres['hip_l'])) / 2
+    trunk = (
+        float(
+            np.linalg.norm(
+                centres['shoulder_r'] + centres['shoulder_l'] - centres['hip_r'] - centres['hip_l']
+            )
+        )
+        / 2
+    )
     lengths |= measured_lengths(marker_set, markers, predicted)
     return lengths | _trunk_lengths(trunk, lengths, predicted), centres
 
 
-def _trunk_lengths(trunk: float, measured: Mapping[str, float], predicted: Mapping[str, float],
-                   ) -> dict[str, float]:
+def _trunk_lengths(
+    trunk: float, measured: Mapping[str, float], predicted: Mapping[str, float]
+) -> dict[str, float]:
     """Lengths [m] of the trunk's parts that add up to the measured one from hips to shoulders.
 
     The pelvis as far as the sacrum grows with its measured depth, sacrum and spine by one factor
@@ -218,8 +267,9 @@ def _trunk_lengths(trunk: float, measured: Mapping[str, float], predicted: Mappi
     """
 
     def way(*parts: str) -> Array:
-        return np.array([sum(predicted[f'{part}_{to}'] for part in parts)
-                         for to in ('forward', 'height')])
+        return np.array(
+            [sum(predicted[f'{part}_{to}'] for part in parts) for to in ('forward', 'height')]
+        )
 
     pelvis, spine = way('l5s1') - way('sacrum'), way('sacrum', 't12l1', 'shoulder')
     alike = trunk / float(np.linalg.norm(pelvis + spine))
@@ -228,12 +278,20 @@ def _trunk_lengths(trunk: float, measured: Mapping[str, float], predicted: Mappi
     along = pelvis @ spine / (spine @ spine)
     factor = float(np.sqrt(along**2 + (trunk**2 - pelvis @ pelvis) / (spine @ spine)) - along)
     l5s1 = pelvis + factor * way('sacrum')
-    return {'pelvis_depth': depth, 'l5s1_forward': float(l5s1[0]), 'l5s1_height': float(l5s1[1]),
-            **{name: factor * predicted[name] for name in _TRUNK}}
+    return {
+        'pelvis_depth': depth,
+        'l5s1_forward': float(l5s1[0]),
+        'l5s1_height': float(l5s1[1]),
+        **{name: factor * predicted[name] for name in _TRUNK},
+    }
 
 
-def _posture(marker_set: MarkerSet, skeleton: Skeleton3D, markers: Mapping[str, Array],
-             centres: Mapping[str, Array]) -> tuple[Array, float, float]:
+def _posture(
+    marker_set: MarkerSet,
+    skeleton: Skeleton3D,
+    markers: Mapping[str, Array],
+    centres: Mapping[str, Array],
+) -> tuple[Array, float, float]:
     """Coordinates of the static trial and the misfit of its landmarks (rms, largest) [m]."""
     placed = marker_set.positions(skeleton.parameters.lengths)
     landmarks = [m for m in marker_set.markers if m.name in placed and m.name in markers]
@@ -242,8 +300,11 @@ def _posture(marker_set: MarkerSet, skeleton: Skeleton3D, markers: Mapping[str, 
         tuple(joints) + tuple(m.name for m in landmarks),
         tuple(SEGMENT_OF_JOINT[j] for j in joints) + tuple(m.segment for m in landmarks),
         np.array([np.zeros(3)] * len(joints) + [placed[m.name] for m in landmarks]),
-        np.array([ANKLE_WEIGHT if j.startswith('ankle') else CENTRE_WEIGHT for j in joints]
-                 + [m.weight for m in landmarks]))
+        np.array(
+            [ANKLE_WEIGHT if j.startswith('ankle') else CENTRE_WEIGHT for j in joints]
+            + [m.weight for m in landmarks]
+        ),
+    )
     target = np.array([centres[j] for j in joints] + [markers[m.name] for m in landmarks])
     flat = skeleton.parameters.lengths
     for i, m in enumerate(landmarks, len(joints)):
@@ -254,13 +315,20 @@ def _posture(marker_set: MarkerSet, skeleton: Skeleton3D, markers: Mapping[str, 
     solver = InverseKinematics(skeleton, model, loose, dict.fromkeys(STRAIGHT, STRAIGHT_WEIGHT))
     solution = solver.solve(target)
     if not solution.ok:
-        raise CalibrationError(f'static trial: the posture could not be fitted: '
-                               f'{solution.message}')
+        raise CalibrationError(
+            f'static trial: the posture could not be fitted: {solution.message}'
+        )
     return solution.q, solution.rms, solution.maximum
 
 
-def _residual(skeleton: Skeleton3D, draft: Calibration, marker_set: MarkerSet,
-              names: Sequence[str], array: Array, posture: Array) -> float:
+def _residual(
+    skeleton: Skeleton3D,
+    draft: Calibration,
+    marker_set: MarkerSet,
+    names: Sequence[str],
+    array: Array,
+    posture: Array,
+) -> float:
     """Root mean square marker distance [m] of the calibrated model over frames of the trial."""
     model = from_calibration(draft, marker_set)
     solver = InverseKinematics(skeleton, model)

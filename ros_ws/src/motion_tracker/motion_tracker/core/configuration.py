@@ -17,19 +17,32 @@ from motion_tracker.core.tracker import MotionTracker
 
 def settings_from(values: Mapping[str, Any]) -> TrackerSettings:
     """Return settings from the values of ``data/parameters.yaml`` by name."""
-    events = LiftEventSettings(minimum_rise=values['minimum_rise'],
-                               minimum_body_rise=values['minimum_body_rise'],
-                               rest_speed=values['rest_speed'])
+    events = LiftEventSettings(
+        minimum_rise=values['minimum_rise'],
+        minimum_body_rise=values['minimum_body_rise'],
+        rest_speed=values['rest_speed'],
+    )
     return TrackerSettings(
-        motion_cutoff=values['motion_cutoff'], plate_cutoff=values['plate_cutoff'],
-        force_threshold=values['force_threshold'], wait=values['wait'],
-        longest_gap=values['longest_gap'], margin=values['margin'],
-        mass_tolerance=values['mass_tolerance'], events=events)
+        motion_cutoff=values['motion_cutoff'],
+        plate_cutoff=values['plate_cutoff'],
+        force_threshold=values['force_threshold'],
+        wait=values['wait'],
+        longest_gap=values['longest_gap'],
+        margin=values['margin'],
+        mass_tolerance=values['mass_tolerance'],
+        events=events,
+    )
 
 
-def tracker_from(values: Mapping[str, Any], subject: Subject, marker_set: str, box_mass: float,
-                 box_size: npt.ArrayLike, first_lift: int = 1,
-                 clock: Callable[[], float] | None = None) -> MotionTracker:
+def tracker_from(
+    values: Mapping[str, Any],
+    subject: Subject,
+    marker_set: str,
+    box_mass: float,
+    box_size: npt.ArrayLike,
+    first_lift: int = 1,
+    clock: Callable[[], float] | None = None,
+) -> MotionTracker:
     """Tracker of one recording.
 
     Parameters
@@ -49,7 +62,17 @@ def tracker_from(values: Mapping[str, Any], subject: Subject, marker_set: str, b
         If the marker set does not exist or does not fit, or a value is refused.
     """
     name = values['marker_set'] or marker_set
-    plates = {side: PlateGeometry(f'{side} plate', surface_height=values['plate_surface_height'])
-              for side in SIDES}
-    return MotionTracker(subject, load_marker_set(name) if name else None, box_mass, box_size,
-                         plates, settings_from(values), first_lift, clock)
+    plates = {
+        side: PlateGeometry(f'{side} plate', surface_height=values['plate_surface_height'])
+        for side in SIDES
+    }
+    return MotionTracker(
+        subject,
+        load_marker_set(name) if name else None,
+        box_mass,
+        box_size,
+        plates,
+        settings_from(values),
+        first_lift,
+        clock,
+    )

@@ -3,13 +3,11 @@
 """What the motion of the body needs from outside."""
 
 import numpy as np
-import numpy.typing as npt
 
 from human_model.compiled import GRAVITY
 from human_model.compiled_blocks import outer_force
 from human_model.skeleton import Skeleton
-
-Array = npt.NDArray[np.float64]
+from human_model.typing import Array
 
 
 def needed_force(skeleton: Skeleton, q: Array, qd: Array, qdd: Array) -> Array:
@@ -29,7 +27,8 @@ def needed_force(skeleton: Skeleton, q: Array, qd: Array, qdd: Array) -> Array:
     ndarray (3,) or (n, 3)
     """
     block = (-1, len(skeleton.coordinates))
-    position, velocity, acceleration = (np.ascontiguousarray(rows).reshape(block)
-                                        for rows in (q, qd, qdd))
+    position, velocity, acceleration = (
+        np.ascontiguousarray(rows).reshape(block) for rows in (q, qd, qdd)
+    )
     force: Array = outer_force(skeleton.tree, position, velocity, acceleration, GRAVITY)
     return force.reshape((*np.shape(q)[:-1], 3))

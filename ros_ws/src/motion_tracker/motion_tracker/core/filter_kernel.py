@@ -4,14 +4,14 @@
 
 import numba
 import numpy as np
-import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
+from human_model.typing import Array
 
 
 @numba.njit(cache=True)
-def run(a: Array, b: Array, d: Array, scale: Array, state: Array, samples: Array, out: Array,
-        ) -> int:
+def run(
+    a: Array, b: Array, d: Array, scale: Array, state: Array, samples: Array, out: Array
+) -> int:
     """Pass samples (n, channels) through ``x' = a x + b u``, ``y = scale (x + d u)``.
 
     ``out`` (n, k, channels) takes the output and its first k - 1 derivatives; ``state`` (order,

@@ -16,10 +16,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg import expm
 
+from human_model.typing import Array
 from motion_tracker.core import filter_kernel
 from motion_tracker.core.errors import FilterError
-
-Array = npt.NDArray[np.float64]
 
 #: Cutoffs of the thesis, section 3.4 [Hz].
 MOTION_CUTOFF = 6.0
@@ -193,10 +192,10 @@ def _first_order_hold(a: Array, b: Array, step: float) -> tuple[Array, Array, Ar
     n, m = b.shape
     block = np.zeros((n + 2 * m, n + 2 * m))
     block[:n, :n] = a * step
-    block[:n, n:n + m] = b * step
-    block[n:n + m, n + m:] = np.eye(m)
+    block[:n, n : n + m] = b * step
+    block[n : n + m, n + m :] = np.eye(m)
     power = expm(block)
-    transition, constant, ramp = power[:n, :n], power[:n, n:n + m], power[:n, n + m:]
+    transition, constant, ramp = power[:n, :n], power[:n, n : n + m], power[:n, n + m :]
     return transition, constant - ramp + transition @ ramp, ramp
 
 
@@ -289,8 +288,9 @@ class CausalFilter:
         if not len(samples):
             return out
         state = self._rest * samples[0] if self._state is None else self._state
-        bad = filter_kernel.run(self._a, self._b, self._d, self._scale, state,
-                                np.ascontiguousarray(samples), out)
+        bad = filter_kernel.run(
+            self._a, self._b, self._d, self._scale, state, np.ascontiguousarray(samples), out
+        )
         if bad >= 0:
             raise FilterError(f'sample: channel {bad} is not finite')
         self._state = state

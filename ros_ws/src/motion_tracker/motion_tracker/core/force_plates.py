@@ -7,10 +7,9 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from human_model.typing import Array
 from motion_tracker.core import plate_kernel
 from motion_tracker.core.errors import ForcePlateError
-
-Array = npt.NDArray[np.float64]
 
 #: Standard gravity [m/s^2] (3rd CGPM 1901).
 STANDARD_GRAVITY = 9.80665
@@ -48,8 +47,11 @@ class PlateGeometry:
         rotation = np.array(self.rotation, dtype=np.float64, order='C')
         if origin.shape != (3,) or not np.all(np.isfinite(origin)):
             raise ForcePlateError(f'{self.name}.origin: three finite numbers needed, got {origin}')
-        if rotation.shape != (3, 3) or np.max(np.abs(rotation @ rotation.T - np.eye(3))) > 1e-6 \
-                or np.linalg.det(rotation) < 0:
+        if (
+            rotation.shape != (3, 3)
+            or np.max(np.abs(rotation @ rotation.T - np.eye(3))) > 1e-6
+            or np.linalg.det(rotation) < 0
+        ):
             raise ForcePlateError(f'{self.name}.rotation: not a rotation matrix')
         if not np.isfinite(self.surface_height):
             raise ForcePlateError(f'{self.name}.surface_height: {self.surface_height} m')
@@ -59,8 +61,9 @@ class PlateGeometry:
         if self.corners is not None:
             corners = np.array(self.corners, dtype=np.float64)
             if corners.ndim != 2 or corners.shape[0] < 3 or corners.shape[1] != 3:
-                raise ForcePlateError(f'{self.name}.corners: shape (n >= 3, 3) is needed, '
-                                      f'got {corners.shape}')
+                raise ForcePlateError(
+                    f'{self.name}.corners: shape (n >= 3, 3) is needed, got {corners.shape}'
+                )
             object.__setattr__(self, 'corners', corners)
 
 
@@ -86,8 +89,9 @@ class GroundReaction:
     loaded: npt.NDArray[np.bool_]
 
 
-def ground_reaction(force: npt.ArrayLike, moment: npt.ArrayLike, plate: PlateGeometry,
-                    threshold: float) -> GroundReaction:
+def ground_reaction(
+    force: npt.ArrayLike, moment: npt.ArrayLike, plate: PlateGeometry, threshold: float
+) -> GroundReaction:
     """Centre of pressure and free moment on the plate's surface.
 
     With F and M of the plate turned into the world and h the height of the surface above the
@@ -117,8 +121,9 @@ def ground_reaction(force: npt.ArrayLike, moment: npt.ArrayLike, plate: PlateGeo
         raise ForcePlateError(f'{plate.name}: force {f.shape} and moment {m.shape} do not agree')
     if not threshold > 0:
         raise ForcePlateError(f'{plate.name}: threshold must be positive, got {threshold} N')
-    return GroundReaction(*plate_kernel.reaction(f, m, plate.rotation, plate.origin,
-                                                 plate.surface_height, threshold))
+    return GroundReaction(
+        *plate_kernel.reaction(f, m, plate.rotation, plate.origin, plate.surface_height, threshold)
+    )
 
 
 def total_cop(force: Array, cop: Array) -> Array:

@@ -20,10 +20,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from human_model.typing import Array
 from motion_tracker.core import hand_force_kernel
 from motion_tracker.core.errors import HandForceError
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -78,8 +77,9 @@ class HandForceEstimator:
         If mass or size are negative or not finite.
     """
 
-    def __init__(self, box_mass: float, box_size: npt.ArrayLike,
-                 settings: HandForceSettings | None = None) -> None:
+    def __init__(
+        self, box_mass: float, box_size: npt.ArrayLike, settings: HandForceSettings | None = None
+    ) -> None:
         size = np.asarray(box_size, dtype=np.float64)
         if not (np.isfinite(box_mass) and box_mass >= 0):
             raise HandForceError(f'box_mass: {box_mass} kg is no mass')
@@ -113,8 +113,16 @@ class HandForceEstimator:
             return self.box_mass
         return None
 
-    def observe(self, missing: float | None, hands: Array, box: Array, speed: float,
-                lifting: bool, step: float, rest_speed: float) -> None:
+    def observe(
+        self,
+        missing: float | None,
+        hands: Array,
+        box: Array,
+        speed: float,
+        lifting: bool,
+        step: float,
+        rest_speed: float,
+    ) -> None:
         """Learn the bias and the rest height from one sample.
 
         Parameters
@@ -134,8 +142,9 @@ class HandForceEstimator:
         """
         if missing is not None and self.gate(hands, box) == 0.0:
             weight = min(1.0, step / self.settings.bias_time)
-            self.bias = missing if self.bias is None else \
-                self.bias + weight * (missing - self.bias)
+            self.bias = (
+                missing if self.bias is None else self.bias + weight * (missing - self.bias)
+            )
         if not lifting and abs(speed) < rest_speed:
             if self.support is None or abs(box[2] - self.support) > self.settings.free_rise:
                 self.support = float(box[2])
@@ -143,8 +152,15 @@ class HandForceEstimator:
                 weight = min(1.0, step / self.settings.bias_time)
                 self.support += weight * (float(box[2]) - self.support)
 
-    def estimate(self, missing: float | Array | None, hands: Array, box: Array,
-                 acceleration: Array, support: float | None, since_end: float | None) -> Array:
+    def estimate(
+        self,
+        missing: float | Array | None,
+        hands: Array,
+        box: Array,
+        acceleration: Array,
+        support: float | None,
+        since_end: float | None,
+    ) -> Array:
         """Force of the box on the [right, left] hand [N], of one sample or of n at once.
 
         Parameters
@@ -170,11 +186,17 @@ class HandForceEstimator:
         count = 1 if hands.ndim == 2 else len(hands)
         less = np.full(count, np.nan) if missing is None else (self.bias or 0.0) - missing
         force: Array = hand_force_kernel.hand_forces(
-            self.box_mass, np.asarray(less, dtype=np.float64).reshape(count),
+            self.box_mass,
+            np.asarray(less, dtype=np.float64).reshape(count),
             np.ascontiguousarray(hands).reshape(count, 2, 3),
             np.ascontiguousarray(box).reshape(count, 3),
             np.ascontiguousarray(acceleration).reshape(count, 3),
-            np.nan if support is None else support, np.nan if since_end is None else since_end,
-            self._reach, self.settings.fade, self.settings.free_rise, self.settings.largest_share,
-            self.settings.release_time)
+            np.nan if support is None else support,
+            np.nan if since_end is None else since_end,
+            self._reach,
+            self.settings.fade,
+            self.settings.free_rise,
+            self.settings.largest_share,
+            self.settings.release_time,
+        )
         return force.reshape(shape)

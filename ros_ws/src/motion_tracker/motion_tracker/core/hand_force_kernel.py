@@ -4,11 +4,9 @@
 
 import numba
 import numpy as np
-import numpy.typing as npt
 
+from human_model.typing import Array
 from motion_tracker.core.force_plates import STANDARD_GRAVITY
-
-Array = npt.NDArray[np.float64]
 
 #: Hands closer together than this share the box equally, squared [m^2].
 _NO_SPAN = 1e-4
@@ -51,9 +49,20 @@ def gate(hands: Array, box: Array, reach: float, fade: float) -> float:
 
 
 @numba.njit(cache=True)
-def hand_forces(mass: float, missing: Array, hands: Array, box: Array, acceleration: Array,
-                support: float, since_end: float, reach: float, fade: float, free_rise: float,
-                largest_share: float, release_time: float) -> Array:
+def hand_forces(
+    mass: float,
+    missing: Array,
+    hands: Array,
+    box: Array,
+    acceleration: Array,
+    support: float,
+    since_end: float,
+    reach: float,
+    fade: float,
+    free_rise: float,
+    largest_share: float,
+    release_time: float,
+) -> Array:
     """Force of the box on the [right, left] hand (n, 2, 3) [N].
 
     Parameters

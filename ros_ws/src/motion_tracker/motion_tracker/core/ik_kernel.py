@@ -15,13 +15,10 @@ equal input gives equal bits.
 
 import numba
 import numpy as np
-import numpy.typing as npt
 
 from human_model.compiled import body_frames
 from human_model.tree import TreeArrays
-
-Array = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+from human_model.typing import Array, IntArray
 
 _DAMPING_START = 1e-9
 _DAMPING_MAX = 1e6
@@ -33,14 +30,27 @@ def _positions(rotation: Array, origin: Array, body: IntArray, local: Array) -> 
     for i in range(body.shape[0]):
         b = body[i]
         for r in range(3):
-            out[i, r] = (origin[b, r] + rotation[b, r, 0] * local[i, 0]
-                         + rotation[b, r, 1] * local[i, 1] + rotation[b, r, 2] * local[i, 2])
+            out[i, r] = (
+                origin[b, r]
+                + rotation[b, r, 0] * local[i, 0]
+                + rotation[b, r, 1] * local[i, 1]
+                + rotation[b, r, 2] * local[i, 2]
+            )
     return out
 
 
 @numba.njit(cache=True)
-def _objective(position: Array, target: Array, weight: Array, q: Array, prior: Array,
-               prior_weight: Array, pair: IntArray, share: Array, pair_weight: Array) -> float:
+def _objective(
+    position: Array,
+    target: Array,
+    weight: Array,
+    q: Array,
+    prior: Array,
+    prior_weight: Array,
+    pair: IntArray,
+    share: Array,
+    pair_weight: Array,
+) -> float:
     total = 0.0
     for i in range(weight.shape[0]):
         if weight[i] > 0.0:
@@ -55,9 +65,17 @@ def _objective(position: Array, target: Array, weight: Array, q: Array, prior: A
 
 
 @numba.njit(cache=True)
-def _normal_equations(tree: TreeArrays, origin: Array, axis: Array, position: Array,
-                      body: IntArray, target: Array, weight: Array, hessian: Array,
-                      gradient: Array) -> None:
+def _normal_equations(
+    tree: TreeArrays,
+    origin: Array,
+    axis: Array,
+    position: Array,
+    body: IntArray,
+    target: Array,
+    weight: Array,
+    hessian: Array,
+    gradient: Array,
+) -> None:
     """Add half the gradient and half the Gauss-Newton Hessian of the marker terms."""
     n_q = gradient.shape[0]
     path = np.empty(n_q, dtype=np.int64)
@@ -82,8 +100,11 @@ def _normal_equations(tree: TreeArrays, origin: Array, axis: Array, position: Ar
             path[count] = j
             count += 1
             j = tree.parent[j]
-        ex, ey, ez = (position[i, 0] - target[i, 0], position[i, 1] - target[i, 1],
-                      position[i, 2] - target[i, 2])
+        ex, ey, ez = (
+            position[i, 0] - target[i, 0],
+            position[i, 1] - target[i, 1],
+            position[i, 2] - target[i, 2],
+        )
         for a in range(count):
             x, y, z = cx[a], cy[a], cz[a]
             gradient[path[a]] += w * (x * ex + y * ey + z * ez)
@@ -94,8 +115,9 @@ def _normal_equations(tree: TreeArrays, origin: Array, axis: Array, position: Ar
 
 
 @numba.njit(cache=True)
-def _solve_free(hessian: Array, gradient: Array, free: IntArray, damping: float,
-                step: Array) -> bool:
+def _solve_free(
+    hessian: Array, gradient: Array, free: IntArray, damping: float, step: Array
+) -> bool:
     """Cholesky solution of (H + damping I) step = -g over the free coordinates.
 
     Row by row of the upper factor; what is left of the matrix is reduced by each row as soon as it
@@ -138,8 +160,16 @@ def _solve_free(hessian: Array, gradient: Array, free: IntArray, damping: float,
 
 
 @numba.njit(cache=True)
-def _bounded_step(hessian: Array, gradient: Array, free: IntArray, damping: float, q: Array,
-                  lower: Array, upper: Array, step: Array) -> bool:
+def _bounded_step(
+    hessian: Array,
+    gradient: Array,
+    free: IntArray,
+    damping: float,
+    q: Array,
+    lower: Array,
+    upper: Array,
+    step: Array,
+) -> bool:
     """Step of the free coordinates; those it would take past a bound stop there, one after all.
 
     The step of the others is solved again with the stopped ones in place, so that a coordinate on
@@ -182,8 +212,17 @@ def _add_pairs(hessian: Array, pair: IntArray, share: Array, pair_weight: Array)
 
 
 @numba.njit(cache=True)
-def seen_curvature(tree: TreeArrays, q: Array, body: IntArray, local: Array, weight: Array,
-                   pair: IntArray, share: Array, pair_weight: Array, floor: float) -> Array:
+def seen_curvature(
+    tree: TreeArrays,
+    q: Array,
+    body: IntArray,
+    local: Array,
+    weight: Array,
+    pair: IntArray,
+    share: Array,
+    pair_weight: Array,
+    floor: float,
+) -> Array:
     """Curvature (n_q,) [m^2 or 1] of the fit about each coordinate, all others free to follow.
 
     The reciprocal diagonal of the inverse Hessian of the marker and pair terms, plus ``floor``
@@ -224,8 +263,11 @@ def misfit(position: Array, target: Array, weight: Array) -> tuple[Array, float,
     used, total, largest = 0, 0.0, 0.0
     for i in range(weight.shape[0]):
         if weight[i] > 0.0:
-            x, y, z = (position[i, 0] - target[i, 0], position[i, 1] - target[i, 1],
-                       position[i, 2] - target[i, 2])
+            x, y, z = (
+                position[i, 0] - target[i, 0],
+                position[i, 1] - target[i, 1],
+                position[i, 2] - target[i, 2],
+            )
             square = x * x + y * y + z * z
             distance[i] = np.sqrt(square)
             total += square
@@ -237,10 +279,23 @@ def misfit(position: Array, target: Array, weight: Array) -> tuple[Array, float,
 
 
 @numba.njit(cache=True)
-def fit(tree: TreeArrays, start: Array, lower: Array, upper: Array, body: IntArray, local: Array,
-        target: Array, weight: Array, prior: Array, prior_weight: Array, pair: IntArray,
-        share: Array, pair_weight: Array, iterations: int, tolerance: float,
-        ) -> tuple[Array, Array, int, bool, float, float]:
+def fit(
+    tree: TreeArrays,
+    start: Array,
+    lower: Array,
+    upper: Array,
+    body: IntArray,
+    local: Array,
+    target: Array,
+    weight: Array,
+    prior: Array,
+    prior_weight: Array,
+    pair: IntArray,
+    share: Array,
+    pair_weight: Array,
+    iterations: int,
+    tolerance: float,
+) -> tuple[Array, Array, int, bool, float, float]:
     """Fit one frame.
 
     Returns coordinates (n_q,), marker positions (n, 3) [m], iterations, whether the last step was
@@ -289,8 +344,9 @@ def fit(tree: TreeArrays, start: Array, lower: Array, upper: Array, body: IntArr
                 trial = np.minimum(np.maximum(q + step, lower), upper)
                 rotation, origin, axis = body_frames(tree, trial)
                 position = _positions(rotation, origin, body, local)
-                trial_value = _objective(position, target, weight, trial, prior, prior_weight,
-                                         pair, share, pair_weight)
+                trial_value = _objective(
+                    position, target, weight, trial, prior, prior_weight, pair, share, pair_weight
+                )
                 moved = np.max(np.abs(trial - q))
                 if trial_value <= value or moved < tolerance:
                     accepted = True

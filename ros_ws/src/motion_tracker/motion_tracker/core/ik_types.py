@@ -8,8 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from human_model.report import SolveStatus
-
-Array = npt.NDArray[np.float64]
+from human_model.typing import Array
 
 
 @dataclass(frozen=True)

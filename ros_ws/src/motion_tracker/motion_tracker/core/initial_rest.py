@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
+from human_model.typing import Array
 
 
 def initial_speed(stamps: npt.ArrayLike, frames: Sequence[Array]) -> float:

@@ -13,9 +13,7 @@ curvature (a marker 0.1 m off the axis counts 0.01 m^2 per unit weight):
   its previous value, and the frame says so.
 """
 
-import csv
 from collections.abc import Mapping
-from functools import cache
 
 import numpy as np
 import numpy.typing as npt
@@ -23,13 +21,13 @@ import numpy.typing as npt
 from human_model.compiled import point_positions
 from human_model.report import SolveStatus
 from human_model.skeleton import Skeleton
+from human_model.typing import Array
 from motion_tracker.core.errors import InverseKinematicsError
 from motion_tracker.core.ik_kernel import fit, marked, misfit, seen_curvature
 from motion_tracker.core.ik_types import IKSettings, IKSolution, Sight
 from motion_tracker.core.marker_model import MarkerModel
-from motion_tracker.core.marker_set import DATA, mirror_name
-
-Array = npt.NDArray[np.float64]
+from motion_tracker.core.marker_set import mirror_name
+from motion_tracker.core.spine_prior import spine_prior
 
 _PLACE = ('pelvis_tx', 'pelvis_ty', 'pelvis_tz', 'pelvis_tilt', 'pelvis_list', 'pelvis_rotation')
 
@@ -39,14 +37,6 @@ _MOST_SIGHTS = 256
 #: Postures tried when there is no previous frame: standing, half and deep squat, as multiples.
 _CROUCH = {'hip_flexion': 1.4, 'knee_angle': 1.5, 'ankle_angle': 0.3}
 _STARTS = (0.0, 0.6, 1.2)
-
-
-@cache
-def spine_prior() -> tuple[tuple[str, str, float], ...]:
-    """Lower and upper coordinate and the share of their sum the lower one takes."""
-    with (DATA / 'spine_prior.csv').open(newline='', encoding='utf-8') as file:
-        return tuple((row['lower'], row['upper'], float(row['lower_share']))
-                     for row in csv.DictReader(file))
 
 
 class InverseKinematics:
@@ -70,15 +60,20 @@ class InverseKinematics:
         If the markers cannot determine the pelvis.
     """
 
-    def __init__(self, skeleton: Skeleton, model: MarkerModel,
-                 settings: IKSettings | None = None,
-                 neutral: Mapping[str, float] | None = None) -> None:
+    def __init__(
+        self,
+        skeleton: Skeleton,
+        model: MarkerModel,
+        settings: IKSettings | None = None,
+        neutral: Mapping[str, float] | None = None,
+    ) -> None:
         self.skeleton = skeleton
         self.model = model
         self.settings = settings or IKSettings()
         tree = skeleton.tree
-        self._segment = np.array([skeleton.parameters.index(name) for name in model.segments],
-                                 dtype=np.int64)
+        self._segment = np.array(
+            [skeleton.parameters.index(name) for name in model.segments], dtype=np.int64
+        )
         self._body = np.ascontiguousarray(tree.segment_body[self._segment], dtype=np.int64)
         self._local = np.ascontiguousarray(tree.segment_offset[self._segment] + model.offsets)
         self._lower = np.ascontiguousarray(skeleton.limits[:, 0])
@@ -94,16 +89,18 @@ class InverseKinematics:
         names = model.names
         self._mirror = np.array([names.index(mirror_name(name, names) or name) for name in names])
         blind = 'lumbar' not in model.segments
-        self._pair_weight = np.full(len(prior), self.settings.blind_spine_weight if blind
-                                    else self.settings.spine_weight)
+        self._pair_weight = np.full(
+            len(prior), self.settings.blind_spine_weight if blind else self.settings.spine_weight
+        )
         self._weights = np.ascontiguousarray(model.weights, dtype=np.float64)
         self._sights: dict[bytes, Sight] = {}
         #: Coordinates seen when all markers are seen.
         self.seen = self._seen(self._weights)
         if not self.seen[place].all():
             lost = [skeleton.coordinates[j] for j in np.flatnonzero(place & ~self.seen)]
-            raise InverseKinematicsError(f'the markers {", ".join(model.names)} do not determine '
-                                         f'{lost[0]}')
+            raise InverseKinematicsError(
+                f'the markers {", ".join(model.names)} do not determine {lost[0]}'
+            )
 
     @property
     def unseen(self) -> tuple[str, ...]:
@@ -113,8 +110,16 @@ class InverseKinematics:
     def _seen(self, weight: Array) -> npt.NDArray[np.bool_]:
         """Coordinates (n_q,) that the markers of positive weight determine."""
         curvature = seen_curvature(
-            self.skeleton.tree, self.skeleton.standing(), self._body, self._local, weight,
-            self._pair, self._share, self._pair_weight, self.settings.neutral_weight)
+            self.skeleton.tree,
+            self.skeleton.standing(),
+            self._body,
+            self._local,
+            weight,
+            self._pair,
+            self._share,
+            self._pair_weight,
+            self.settings.neutral_weight,
+        )
         return np.asarray(curvature > self.settings.seen_curvature)
 
     def _sight(self, weight: Array) -> Sight:
@@ -125,8 +130,9 @@ class InverseKinematics:
             held = self.seen & ~self._seen(weight)
             names = tuple(self.skeleton.coordinates[j] for j in np.flatnonzero(held))
             lost = bool(held[self._place].any() or not weight.any())
-            sight = Sight(held, names, lost,
-                          np.where(held, self.settings.held_weight, self._neutral))
+            sight = Sight(
+                held, names, lost, np.where(held, self.settings.held_weight, self._neutral)
+            )
             if len(self._sights) >= _MOST_SIGHTS:
                 self._sights.clear()
             self._sights[key] = sight
@@ -134,12 +140,16 @@ class InverseKinematics:
 
     def predict(self, q: npt.ArrayLike) -> Array:
         """Marker positions (n_markers, 3) [m] at coordinates q."""
-        return np.asarray(point_positions(
-            self.skeleton.tree, np.ascontiguousarray(q, dtype=np.float64), self._segment,
-            np.ascontiguousarray(self.model.offsets)))
+        return np.asarray(
+            point_positions(
+                self.skeleton.tree,
+                np.ascontiguousarray(q, dtype=np.float64),
+                self._segment,
+                np.ascontiguousarray(self.model.offsets),
+            )
+        )
 
-    def solve(self, positions: npt.ArrayLike, previous: npt.ArrayLike | None = None,
-              ) -> IKSolution:
+    def solve(self, positions: npt.ArrayLike, previous: npt.ArrayLike | None = None) -> IKSolution:
         """Fit one frame.
 
         Parameters
@@ -156,35 +166,53 @@ class InverseKinematics:
         """
         measured = np.ascontiguousarray(positions, dtype=np.float64)
         if measured.shape != (len(self.model.names), 3):
-            raise InverseKinematicsError(f'positions: shape ({len(self.model.names)}, 3) is '
-                                         f'needed, got {measured.shape}')
+            raise InverseKinematicsError(
+                f'positions: shape ({len(self.model.names)}, 3) is needed, got {measured.shape}'
+            )
         target, weight = marked(measured, self._weights)
         last = None if previous is None else np.ascontiguousarray(previous, dtype=np.float64)
         sight = self._sight(weight)
         if sight.lost:
             return self._lost(weight, last, sight)
         q, position, iterations, converged, value, stationarity = self._best(
-            target, weight, last, sight)
+            target, weight, last, sight
+        )
         residuals, rms, maximum, used = misfit(position, target, weight)
         rejected: tuple[str, ...] = ()
         swapped = ''
-        if self._too_far(rms, maximum) or (maximum > self.settings.rms_residual
-                                           and self._crossed_pairs(position, target, weight)):
+        if self._too_far(rms, maximum) or (
+            maximum > self.settings.rms_residual and self._crossed_pairs(position, target, weight)
+        ):
             crossed = self._sides_exchanged(target, weight, residuals)
             if crossed is not None:
                 q, position, target = crossed
                 swapped = 'of the left and right side are all exchanged'
             else:
-                q, position, weight, rejected, swapped = self._robust(q, target, weight, last,
-                                                                      sight)
+                q, position, weight, rejected, swapped = self._robust(
+                    q, target, weight, last, sight
+                )
             residuals, rms, maximum, used = misfit(position, target, weight)
-        status, message = self._judge(converged, rms, maximum, residuals, used, sight, swapped,
-                                      rejected)
-        return IKSolution(q, residuals, rms, maximum, used, sight.names, rejected,
-                          status, message, iterations, value, stationarity)
+        status, message = self._judge(
+            converged, rms, maximum, residuals, used, sight, swapped, rejected
+        )
+        return IKSolution(
+            q,
+            residuals,
+            rms,
+            maximum,
+            used,
+            sight.names,
+            rejected,
+            status,
+            message,
+            iterations,
+            value,
+            stationarity,
+        )
 
-    def _fit(self, start: Array, target: Array, weight: Array, last: Array | None,
-             sight: Sight | None) -> tuple[Array, Array, int, bool, float, float]:
+    def _fit(
+        self, start: Array, target: Array, weight: Array, last: Array | None, sight: Sight | None
+    ) -> tuple[Array, Array, int, bool, float, float]:
         """Fit from one start; without a sight all coordinates are taken as seen."""
         prior = np.zeros_like(start)
         prior_weight = self._neutral
@@ -193,17 +221,32 @@ class InverseKinematics:
             if sight.names and last is not None:
                 prior = np.where(sight.held, last, 0.0)
         result: tuple[Array, Array, int, bool, float, float] = fit(
-            self.skeleton.tree, start, self._lower, self._upper, self._body, self._local, target,
-            weight, prior, prior_weight, self._pair, self._share, self._pair_weight,
-            self.settings.max_iterations, self.settings.tolerance)
+            self.skeleton.tree,
+            start,
+            self._lower,
+            self._upper,
+            self._body,
+            self._local,
+            target,
+            weight,
+            prior,
+            prior_weight,
+            self._pair,
+            self._share,
+            self._pair_weight,
+            self.settings.max_iterations,
+            self.settings.tolerance,
+        )
         return result
 
-    def _best(self, target: Array, weight: Array, last: Array | None, sight: Sight | None,
-              ) -> tuple[Array, Array, int, bool, float, float]:
+    def _best(
+        self, target: Array, weight: Array, last: Array | None, sight: Sight | None
+    ) -> tuple[Array, Array, int, bool, float, float]:
         if last is not None:
             return self._fit(last, target, weight, last, sight)
-        fits = [self._fit(start, target, weight, None, sight)
-                for start in self._starts(target, weight)]
+        fits = [
+            self._fit(start, target, weight, None, sight) for start in self._starts(target, weight)
+        ]
         return min(fits, key=lambda result: result[4])
 
     def _starts(self, target: Array, weight: Array) -> list[Array]:
@@ -213,19 +256,26 @@ class InverseKinematics:
         on_pelvis = np.array([name == 'pelvis' for name in self.model.segments]) & (weight > 0)
         use = on_pelvis if on_pelvis.any() else weight > 0
         for share in _STARTS:
-            q = skeleton.vector({f'{name}_{side}': value * share
-                                 for name, value in _CROUCH.items() for side in 'rl'})
+            q = skeleton.vector(
+                {
+                    f'{name}_{side}': value * share
+                    for name, value in _CROUCH.items()
+                    for side in 'rl'
+                }
+            )
             shift = (target[use] - self.predict(q)[use]).mean(axis=0)
-            q += skeleton.vector({'pelvis_tx': shift[0], 'pelvis_ty': shift[2],
-                                  'pelvis_tz': -shift[1]})
+            q += skeleton.vector(
+                {'pelvis_tx': shift[0], 'pelvis_ty': shift[2], 'pelvis_tz': -shift[1]}
+            )
             starts.append(q)
         return starts
 
     def _too_far(self, rms: float, maximum: float) -> bool:
         return maximum > self.settings.max_residual or rms > self.settings.rms_residual
 
-    def _sides_exchanged(self, target: Array, weight: Array, distance: Array,
-                         ) -> tuple[Array, Array, Array] | None:
+    def _sides_exchanged(
+        self, target: Array, weight: Array, distance: Array
+    ) -> tuple[Array, Array, Array] | None:
         """Fit with all left and right names exchanged, if that explains the markers far better.
 
         Returns coordinates, model positions and the exchanged target, or None.
@@ -239,8 +289,9 @@ class InverseKinematics:
             return None
         return q, position, np.where((seen > 0)[:, None], crossed, position)
 
-    def _robust(self, q: Array, target: Array, weight: Array, last: Array | None,
-                sight: Sight) -> tuple[Array, Array, Array, tuple[str, ...], str]:
+    def _robust(
+        self, q: Array, target: Array, weight: Array, last: Array | None, sight: Sight
+    ) -> tuple[Array, Array, Array, tuple[str, ...], str]:
         """Refit without the markers that do not fit; say which of them look exchanged."""
         scale = self.settings.rms_residual
         start = q if last is None else last
@@ -257,15 +308,23 @@ class InverseKinematics:
         found = []
         for a, b, straight, crossed in self._crossed_pairs(position, target, weight):
             bad[[a, b]] = True
-            found.append(f'{names[a]} and {names[b]} look exchanged (residual {straight:.3f} m, '
-                         f'{crossed:.3f} m when exchanged)')
+            found.append(
+                f'{names[a]} and {names[b]} look exchanged (residual {straight:.3f} m, '
+                f'{crossed:.3f} m when exchanged)'
+            )
         good = np.where(bad, 0.0, weight)
         start, position, *_ = self._fit(start, target, good, last, sight)
-        return (start, position, good, tuple(names[i] for i in np.flatnonzero(bad)),
-                '; '.join(found))
+        return (
+            start,
+            position,
+            good,
+            tuple(names[i] for i in np.flatnonzero(bad)),
+            '; '.join(found),
+        )
 
-    def _crossed_pairs(self, position: Array, target: Array, weight: Array,
-                       ) -> list[tuple[int, int, float, float]]:
+    def _crossed_pairs(
+        self, position: Array, target: Array, weight: Array
+    ) -> list[tuple[int, int, float, float]]:
         """Pairs of markers whose residuals shrink to less than half when they are exchanged.
 
         Each with the smaller residual as named and the larger when exchanged [m].
@@ -274,28 +333,42 @@ class InverseKinematics:
         far = np.flatnonzero((weight > 0) & (away > self.settings.rms_residual))
         pairs = []
         for at, a in enumerate(far):
-            for b in far[at + 1:]:
-                crossed = max(float(np.linalg.norm(target[a] - position[b])),
-                              float(np.linalg.norm(target[b] - position[a])))
+            for b in far[at + 1 :]:
+                crossed = max(
+                    float(np.linalg.norm(target[a] - position[b])),
+                    float(np.linalg.norm(target[b] - position[a])),
+                )
                 straight = float(min(away[a], away[b]))
                 if crossed < 0.5 * straight:
                     pairs.append((int(a), int(b), straight, crossed))
         return pairs
 
-    def _judge(self, converged: bool, rms: float, maximum: float, residuals: Array, used: int,
-               sight: Sight, swapped: str, rejected: tuple[str, ...]) -> tuple[SolveStatus, str]:
+    def _judge(
+        self,
+        converged: bool,
+        rms: float,
+        maximum: float,
+        residuals: Array,
+        used: int,
+        sight: Sight,
+        swapped: str,
+        rejected: tuple[str, ...],
+    ) -> tuple[SolveStatus, str]:
         if swapped:
             return SolveStatus.TRACKER_MARKERS_SWAPPED, f'markers {swapped}'
         if not converged:
             return SolveStatus.TRACKER_NOT_CONVERGED, 'inverse kinematics did not converge'
         if not (maximum <= self.settings.max_residual and rms <= self.settings.rms_residual):
             worst = self.model.names[int(np.nanargmax(residuals))]
-            return (SolveStatus.TRACKER_BAD_INPUT,
-                    f'marker residuals rms {rms:.3f} m, largest {maximum:.3f} m at {worst}')
+            return (
+                SolveStatus.TRACKER_BAD_INPUT,
+                f'marker residuals rms {rms:.3f} m, largest {maximum:.3f} m at {worst}',
+            )
         words = []
         if used < len(residuals):
-            seen = {s for s, r in zip(self.model.segments, residuals, strict=True)
-                    if np.isfinite(r)}
+            seen = {
+                s for s, r in zip(self.model.segments, residuals, strict=True) if np.isfinite(r)
+            }
             blind = sorted(set(self.model.segments) - seen)
             words += [f'no marker seen on {", ".join(blind)}'] if blind else []
         if sight.names:
@@ -309,6 +382,16 @@ class InverseKinematics:
         q = self.skeleton.standing() if last is None else last.copy()
         used = int((weight > 0).sum())
         return IKSolution(
-            q, np.full(len(weight), np.nan), np.nan, np.nan, used, sight.names, (),
+            q,
+            np.full(len(weight), np.nan),
+            np.nan,
+            np.nan,
+            used,
+            sight.names,
+            (),
             SolveStatus.TRACKER_MARKERS_MISSING,
-            f'{used} of {len(weight)} markers: the pelvis is not determined', 0, np.nan, np.nan)
+            f'{used} of {len(weight)} markers: the pelvis is not determined',
+            0,
+            np.nan,
+            np.nan,
+        )

@@ -7,18 +7,24 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from human_model.typing import Array
 from motion_tracker.core.errors import CalibrationError
 from motion_tracker.core.marker_set import DATA
 
-Array = npt.NDArray[np.float64]
-
 #: Segment whose proximal joint each centre is.
 SEGMENT_OF_JOINT = {
-    f'{joint}_{side}': f'{segment}_{side}' for side in 'rl' for joint, segment in (
-        ('hip', 'thigh'), ('knee', 'shank'), ('ankle', 'foot'), ('shoulder', 'upper_arm'),
-        ('elbow', 'forearm'), ('wrist', 'hand'))}
+    f'{joint}_{side}': f'{segment}_{side}'
+    for side in 'rl'
+    for joint, segment in (
+        ('hip', 'thigh'),
+        ('knee', 'shank'),
+        ('ankle', 'foot'),
+        ('shoulder', 'upper_arm'),
+        ('elbow', 'forearm'),
+        ('wrist', 'hand'),
+    )
+}
 
 _METHODS = {'marker': 1, 'midpoint': 2, 'harrington_2007': 5, 'below_marker': 1}
 
@@ -49,16 +55,24 @@ def load_joint_definitions(marker_set: str) -> tuple[JointDefinition, ...]:
                 continue
             names = tuple(row['markers'].split())
             if row['joint'] not in SEGMENT_OF_JOINT or _METHODS.get(row['method']) != len(names):
-                raise CalibrationError(f'{path.name}, line {line}: {row["joint"]!r} by '
-                                       f'{row["method"]!r} from {len(names)} markers')
+                raise CalibrationError(
+                    f'{path.name}, line {line}: {row["joint"]!r} by '
+                    f'{row["method"]!r} from {len(names)} markers'
+                )
             found.append(JointDefinition(row['joint'], row['method'], names, row['source']))
     if not found:
         raise CalibrationError(f'{path.name}: no joint centres for marker set {marker_set!r}')
     return tuple(found)
 
 
-def harrington_hip(right_asis: Array, left_asis: Array, right_psis: Array, left_psis: Array,
-                   malleolus: Array, side: str) -> Array:
+def harrington_hip(
+    right_asis: Array,
+    left_asis: Array,
+    right_psis: Array,
+    left_psis: Array,
+    malleolus: Array,
+    side: str,
+) -> Array:
     """Hip centre (3,) [m] by the regression of Harrington et al. 2007 (J Biomech 40:595).
 
     In pelvic axes at mid-ASIS, x forward in the plane of ASIS and PSIS, y up, z right, with pelvic
@@ -83,13 +97,19 @@ def harrington_hip(right_asis: Array, left_asis: Array, right_psis: Array, left_
     forward = forward / np.linalg.norm(forward)
     upward = np.cross(rightward, forward)
     sign = 1.0 if side == 'r' else -1.0
-    return np.asarray(front + (-0.24 * depth - 0.0099) * forward
-                      + (-0.16 * width - 0.04 * leg - 0.0071) * upward
-                      + sign * (0.28 * depth + 0.16 * width + 0.0079) * rightward)
+    return np.asarray(
+        front
+        + (-0.24 * depth - 0.0099) * forward
+        + (-0.16 * width - 0.04 * leg - 0.0071) * upward
+        + sign * (0.28 * depth + 0.16 * width + 0.0079) * rightward
+    )
 
 
-def joint_centres(definitions: tuple[JointDefinition, ...], markers: Mapping[str, Array],
-                  below: Mapping[str, Array]) -> dict[str, Array]:
+def joint_centres(
+    definitions: tuple[JointDefinition, ...],
+    markers: Mapping[str, Array],
+    below: Mapping[str, Array],
+) -> dict[str, Array]:
     """Joint centres (3,) [m] by name of the joint.
 
     Parameters
@@ -110,12 +130,15 @@ def joint_centres(definitions: tuple[JointDefinition, ...], markers: Mapping[str
     for definition in definitions:
         absent = [name for name in definition.markers if name not in markers]
         if absent:
-            raise CalibrationError(f'static trial: marker {absent[0]!r} is missing, it is needed '
-                                   f'for {definition.joint} ({definition.source})')
+            raise CalibrationError(
+                f'static trial: marker {absent[0]!r} is missing, it is needed '
+                f'for {definition.joint} ({definition.source})'
+            )
         at = [np.asarray(markers[name]) for name in definition.markers]
         if definition.method == 'harrington_2007':
-            centres[definition.joint] = harrington_hip(at[0], at[1], at[2], at[3], at[4],
-                                                       definition.joint[-1])
+            centres[definition.joint] = harrington_hip(
+                at[0], at[1], at[2], at[3], at[4], definition.joint[-1]
+            )
         elif definition.method == 'below_marker':
             centres[definition.joint] = at[0] + below[definition.joint]
         else:

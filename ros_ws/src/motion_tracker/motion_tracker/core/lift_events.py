@@ -20,10 +20,9 @@ from enum import IntEnum
 import numpy as np
 import numpy.typing as npt
 
+from human_model.typing import Array
 from motion_tracker.core.errors import LiftEventError
 from motion_tracker.core.onset_kernel import onset
-
-Array = npt.NDArray[np.float64]
 
 #: Steps of the search for a change point [s]; well below the 10 ms of a frame.
 _STEP = 0.002
@@ -211,8 +210,9 @@ class LiftEventDetector:
         return self._event(LiftPhase.END, when, value)
 
     def _event(self, phase: LiftPhase, when: float, value: float) -> LiftEvent:
-        return LiftEvent(phase, self._number, float(when), float(value),
-                         float(self._time[-1] - when))
+        return LiftEvent(
+            phase, self._number, float(when), float(value), float(self._time[-1] - when)
+        )
 
     def _parabola(self, at: int) -> tuple[float, float]:
         """Height [m] and speed [m/s] at one sample by a least-squares parabola round it."""
@@ -230,13 +230,12 @@ class LiftEventDetector:
             return height, slope / half
         powers = np.array(times)[:, None] ** np.arange(len(times))
         coefficients = np.linalg.solve(powers, np.array(heights))
-        return (float(coefficients[0]),
-                float(coefficients[1]) / half if len(times) > 1 else 0.0)
+        return (float(coefficients[0]), float(coefficients[1]) / half if len(times) > 1 else 0.0)
 
     def _at_rest(self, first: int, last: int) -> bool:
         """Whether the smoothed speed stays below rest speed over the samples first..last."""
         limit = self.settings.rest_speed
-        return all(abs(speed) <= limit for speed in self._speed[first:last + 1])
+        return all(abs(speed) <= limit for speed in self._speed[first : last + 1])
 
     def _start_instant(self) -> tuple[float, float]:
         base = self._base
@@ -246,33 +245,40 @@ class LiftEventDetector:
         rested = self._time[base] - self._time[before] >= self.settings.rest_time - 1e-9
         if rested and self._at_rest(before, base):
             first = before
-            while (first > 0
-                   and self._time[base] - self._time[first] < 3 * self.settings.rest_time
-                   and abs(self._speed[first - 1]) <= self.settings.rest_speed):
+            while (
+                first > 0
+                and self._time[base] - self._time[first] < 3 * self.settings.rest_time
+                and abs(self._speed[first - 1]) <= self.settings.rest_speed
+            ):
                 first -= 1
-            level = float(np.median(self._raw[first:before + 1]))
+            level = float(np.median(self._raw[first : before + 1]))
             last = base
-            while (last < len(self._smooth) - 1
-                   and self._smooth[last] - level < self.settings.onset_rise):
+            while (
+                last < len(self._smooth) - 1
+                and self._smooth[last] - level < self.settings.onset_rise
+            ):
                 last += 1
-            t, z = np.array(self._time[first:last + 1]), np.array(self._raw[first:last + 1])
+            t, z = np.array(self._time[first : last + 1]), np.array(self._raw[first : last + 1])
             return _change_point(t, z)
         return self._turning_point(base)
 
     def _end_instant(self) -> tuple[float, float]:
         top = self._top
         after = top
-        while after < len(self._speed) - 1 and \
-                self._time[after] - self._time[top] < self.settings.rest_time:
+        while (
+            after < len(self._speed) - 1
+            and self._time[after] - self._time[top] < self.settings.rest_time
+        ):
             after += 1
-        if self._time[after] - self._time[top] >= self.settings.rest_time - 1e-9 \
-                and self._at_rest(top + 1, after):
-            level = float(np.median(self._raw[top:after + 1]))
+        if self._time[after] - self._time[top] >= self.settings.rest_time - 1e-9 and self._at_rest(
+            top + 1, after
+        ):
+            level = float(np.median(self._raw[top : after + 1]))
             first = top
             while first > self._base and level - self._smooth[first] < self.settings.onset_rise:
                 first -= 1
-            t = np.array(self._time[first:after + 1])[::-1]
-            z = np.array(self._raw[first:after + 1])[::-1]
+            t = np.array(self._time[first : after + 1])[::-1]
+            z = np.array(self._raw[first : after + 1])[::-1]
             when, height = _change_point(-t, -z)
             return -when, -height
         return self._turning_point(top)
@@ -338,8 +344,12 @@ def _change_point(time: Array, height: Array) -> tuple[float, float]:
     return instant, level
 
 
-def detect_lifts(time: npt.ArrayLike, height: npt.ArrayLike, body: npt.ArrayLike | None = None,
-                 settings: LiftEventSettings | None = None) -> list[LiftEvent]:
+def detect_lifts(
+    time: npt.ArrayLike,
+    height: npt.ArrayLike,
+    body: npt.ArrayLike | None = None,
+    settings: LiftEventSettings | None = None,
+) -> list[LiftEvent]:
     """All events of a recording, by the same detector that runs live.
 
     Parameters
@@ -351,14 +361,20 @@ def detect_lifts(time: npt.ArrayLike, height: npt.ArrayLike, body: npt.ArrayLike
     """
     stamps = np.asarray(time, dtype=np.float64)
     heights = np.asarray(height, dtype=np.float64)
-    shoulders = (np.full_like(heights, np.nan) if body is None
-                 else np.asarray(body, dtype=np.float64))
+    shoulders = (
+        np.full_like(heights, np.nan) if body is None else np.asarray(body, dtype=np.float64)
+    )
     if not stamps.shape == heights.shape == shoulders.shape or stamps.ndim != 1:
-        raise LiftEventError(f'time {stamps.shape}, height {heights.shape} and body '
-                             f'{shoulders.shape} must have one shape (n,)')
+        raise LiftEventError(
+            f'time {stamps.shape}, height {heights.shape} and body '
+            f'{shoulders.shape} must have one shape (n,)'
+        )
     detector = LiftEventDetector(settings, history=np.inf)
-    events = [event for row in zip(stamps, heights, shoulders, strict=True)
-              for event in detector.push(*map(float, row))]
+    events = [
+        event
+        for row in zip(stamps, heights, shoulders, strict=True)
+        for event in detector.push(*map(float, row))
+    ]
     return events + detector.finish()
 
 

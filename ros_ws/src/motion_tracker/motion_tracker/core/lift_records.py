@@ -10,13 +10,7 @@ from motion_tracker.core.ik_types import IKSolution
 from motion_tracker.core.lift_events import LiftEvent, LiftPhase
 from motion_tracker.core.live_status import LiveStatus
 from motion_tracker.core.measured_lift import LiftBuilder
-from motion_tracker.core.tracked import (
-    FROM_BOX,
-    DetectedEvent,
-    FrameRecord,
-    MeasuredLift,
-    Output,
-)
+from motion_tracker.core.tracked import FROM_BOX, DetectedEvent, FrameRecord, MeasuredLift, Output
 
 #: Frames older than this are forgotten unless a lift needs them [s].
 _HISTORY = 15.0
@@ -80,8 +74,9 @@ class LiftRecords:
                 outputs.append(DetectedEvent(event, lift_id, source))
         return outputs
 
-    def begin_builds(self, now: float, rate: float, estimator: HandForceEstimator,
-                     status: LiveStatus) -> None:
+    def begin_builds(
+        self, now: float, rate: float, estimator: HandForceEstimator, status: LiveStatus
+    ) -> None:
         """Begin to build the lifts whose frames have come in.
 
         Parameters
@@ -95,11 +90,26 @@ class LiftRecords:
         """
         while self._due and now >= self._due[0][2].time + self._margin:
             lift_id, start, end, support = self._due.popleft()
-            frames = [frame for frame in self._frames
-                      if start.time - self._margin <= frame.stamp <= end.time + self._margin]
-            self._builds.append((start.time, self._builder.build(
-                lift_id, start.time, end.time, frames, rate, estimator, support,
-                status.doubt_since(start.time))))
+            frames = [
+                frame
+                for frame in self._frames
+                if start.time - self._margin <= frame.stamp <= end.time + self._margin
+            ]
+            self._builds.append(
+                (
+                    start.time,
+                    self._builder.build(
+                        lift_id,
+                        start.time,
+                        end.time,
+                        frames,
+                        rate,
+                        estimator,
+                        support,
+                        status.doubt_since(start.time),
+                    ),
+                )
+            )
 
     def build(self, steps: int | None = None) -> list[Output]:
         """Take some steps, or all, of building measured lifts; return those that are done."""

@@ -10,10 +10,10 @@ from collections import Counter
 from collections.abc import Mapping
 
 import numpy as np
-import numpy.typing as npt
 
 from human_model.motion import POINTS
 from human_model.skeleton import Skeleton
+from human_model.typing import Array
 from motion_tracker.core.dynamics import needed_force
 from motion_tracker.core.filters import CausalFilter
 from motion_tracker.core.force_plates import SIDES, PlateGeometry
@@ -23,8 +23,6 @@ from motion_tracker.core.live_status import LiveStatus
 from motion_tracker.core.plate_kernel import feet
 from motion_tracker.core.streams import SampledStream
 from motion_tracker.core.tracked import Notice, TrackedFrame, TrackerSettings
-
-Array = npt.NDArray[np.float64]
 
 #: Right, then left grip centre among the shared points.
 HANDS = slice(POINTS.index('hand_r'), POINTS.index('hand_l') + 1)
@@ -49,10 +47,17 @@ class LiveMotion:
         Where lost frames are counted.
     """
 
-    def __init__(self, skeleton: Skeleton, rate: float, settings: TrackerSettings,
-                 plates: Mapping[str, PlateGeometry], wrenches: Mapping[str, SampledStream],
-                 hand_force: HandForceEstimator, status: LiveStatus, counts: Counter[str],
-                 ) -> None:
+    def __init__(
+        self,
+        skeleton: Skeleton,
+        rate: float,
+        settings: TrackerSettings,
+        plates: Mapping[str, PlateGeometry],
+        wrenches: Mapping[str, SampledStream],
+        hand_force: HandForceEstimator,
+        status: LiveStatus,
+        counts: Counter[str],
+    ) -> None:
         self._skeleton = skeleton
         self._rate = rate
         self._settings = settings
@@ -72,8 +77,14 @@ class LiveMotion:
         """Delay of the samples [s]."""
         return self._filter.delay
 
-    def sample(self, stamp: float, solution: IKSolution, box: Array | None, lifting: bool,
-               end_known: float | None) -> tuple[TrackedFrame, list[Notice]]:
+    def sample(
+        self,
+        stamp: float,
+        solution: IKSolution,
+        box: Array | None,
+        lifting: bool,
+        end_known: float | None,
+    ) -> tuple[TrackedFrame, list[Notice]]:
         """Sample that a marker frame completes, and what is to be said of the masses.
 
         Parameters
@@ -98,8 +109,9 @@ class LiveMotion:
             need = float(needed_force(self._skeleton, q, qd, qdd)[2])
             missing = need - vertical
         if carried is not None:
-            forces |= self._carry(time, hands, carried, missing, self._status.settling(stamp),
-                                  lifting, end_known)
+            forces |= self._carry(
+                time, hands, carried, missing, self._status.settling(stamp), lifting, end_known
+            )
         if missing is not None:
             held = self._held(hands, None if carried is None else carried[0], lifting)
             check = self._status.weigh(stamp, vertical, need, held, self._rate)
@@ -109,8 +121,9 @@ class LiveMotion:
         status, message = self._status.judge(stamp, solution, ' and '.join(silent))
         return TrackedFrame(motion, solution, status, message, self.delay), notices
 
-    def _filtered(self, stamp: float, q: Array, box: Array | None,
-                  ) -> tuple[tuple[Array, Array, Array], tuple[Array, Array, Array] | None]:
+    def _filtered(
+        self, stamp: float, q: Array, box: Array | None
+    ) -> tuple[tuple[Array, Array, Array], tuple[Array, Array, Array] | None]:
         """Pass one frame, and the lost ones before it by interpolation, through the filters."""
         lost = 0
         if self._input is not None:
@@ -146,8 +159,9 @@ class LiveMotion:
                 wrench[side] = row
         if silent:
             return {}, silent
-        force, cop, free = feet(wrench, self._rotation, self._origin, self._surface,
-                                self._settings.force_threshold)
+        force, cop, free = feet(
+            wrench, self._rotation, self._origin, self._surface, self._settings.force_threshold
+        )
         return {'ground_force': force, 'cop': cop, 'free_moment': free}, silent
 
     def _held(self, hands: Array, box: Array | None, lifting: bool) -> float | None:
@@ -158,9 +172,16 @@ class LiveMotion:
             return None if lifting else 0.0
         return self._hand_force.held(hands, box, self._hand_force.support if lifting else None)
 
-    def _carry(self, time: float, hands: Array, box: tuple[Array, Array, Array],
-               missing: float | None, settling: bool, lifting: bool, end_known: float | None,
-               ) -> dict[str, Array]:
+    def _carry(
+        self,
+        time: float,
+        hands: Array,
+        box: tuple[Array, Array, Array],
+        missing: float | None,
+        settling: bool,
+        lifting: bool,
+        end_known: float | None,
+    ) -> dict[str, Array]:
         """Hand forces (1, 2, 3) [N] and box position (1, 3) [m] of the live sample.
 
         The bias of `missing` is learnt from samples of settled filters only.
@@ -168,9 +189,16 @@ class LiveMotion:
         position, speed, acceleration = box
         since = None if end_known is None else time - end_known
         released = since is None or since > self._settings.hand_force.release_time
-        self._hand_force.observe(None if settling else missing, hands, position, float(speed[2]),
-                                 lifting or not released, 1.0 / self._rate,
-                                 self._settings.events.rest_speed)
-        force = self._hand_force.estimate(missing, hands, position, acceleration,
-                                          self._hand_force.support, since)
+        self._hand_force.observe(
+            None if settling else missing,
+            hands,
+            position,
+            float(speed[2]),
+            lifting or not released,
+            1.0 / self._rate,
+            self._settings.events.rest_speed,
+        )
+        force = self._hand_force.estimate(
+            missing, hands, position, acceleration, self._hand_force.support, since
+        )
         return {'hand_force': force[None], 'box_position': position[None]}

@@ -34,8 +34,9 @@ class LiveStatus:
         """Whether the filters have not yet forgotten how they started."""
         return stamp < self._settled
 
-    def weigh(self, stamp: float, vertical: float, need: float, held: float | None, rate: float,
-              ) -> MassCheck | None:
+    def weigh(
+        self, stamp: float, vertical: float, need: float, held: float | None, rate: float
+    ) -> MassCheck | None:
         """Take one sample for the `MassWatch`; return the check when its verdict is new."""
         if self.settling(stamp):
             return None

@@ -9,9 +9,9 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
+from human_model.typing import Array
 from motion_tracker.core.errors import TrackerError
 
-Array = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
 
 #: A coordinate beyond this is no position in metres in a laboratory [m].
@@ -39,8 +39,9 @@ class MarkerFrames:
         self._twice = 0
         self._rows = self._places = np.zeros(0, dtype=np.intp)
 
-    def arrange(self, stamp: float, names: Sequence[str], positions: npt.ArrayLike,
-                ) -> tuple[Array, list[str]]:
+    def arrange(
+        self, stamp: float, names: Sequence[str], positions: npt.ArrayLike
+    ) -> tuple[Array, list[str]]:
         """Positions (n_markers, 3) [m] in the model's order, and names not seen before.
 
         A marker that is not there is NaN; so is one whose name occurs twice.
@@ -52,12 +53,15 @@ class MarkerFrames:
         """
         array = np.ascontiguousarray(positions, dtype=np.float64).reshape(-1, 3)
         if len(array) != len(names):
-            raise TrackerError(f'markers at {stamp:.3f} s: {len(names)} names, '
-                               f'{len(array)} positions')
+            raise TrackerError(
+                f'markers at {stamp:.3f} s: {len(names)} names, {len(array)} positions'
+            )
         largest = _largest(array)
         if largest > LARGEST_POSITION:
-            raise TrackerError(f'markers at {stamp:.3f} s: a coordinate is {largest:.0f} m; are '
-                               'the markers in millimetres?')
+            raise TrackerError(
+                f'markers at {stamp:.3f} s: a coordinate is {largest:.0f} m; are '
+                'the markers in millimetres?'
+            )
         unknown: list[str] = []
         if tuple(names) != self._names:
             unknown = self._plan(tuple(names))
@@ -73,8 +77,11 @@ class MarkerFrames:
         self._twice = len(known) - len(set(known))
         self._rows = np.array([self._row[name] for name in once], dtype=np.intp)
         self._places = np.array([names.index(name) for name in once], dtype=np.intp)
-        unknown = [name for name in dict.fromkeys(names)
-                   if name not in self._row and name not in self._noticed]
+        unknown = [
+            name
+            for name in dict.fromkeys(names)
+            if name not in self._row and name not in self._noticed
+        ]
         self._noticed.update(unknown)
         return unknown
 

@@ -18,21 +18,29 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from human_model.anthropometry import segment_lengths
 from human_model.subject import Subject
+from human_model.typing import Array
 from motion_tracker.core.errors import MarkerSetError
-
-Array = npt.NDArray[np.float64]
 
 #: Person the positions of the marker sets belong to.
 REFERENCE_SUBJECT = Subject('reference', 'male', 75.0, 1.75, 30.0)
 
 DATA = Path(__file__).resolve().parent.parent / 'data'
 
-COLUMNS = ('marker', 'segment', 'x', 'y', 'z', 'scale_with', 'weight', 'tracking', 'description',
-           'source')
+COLUMNS = (
+    'marker',
+    'segment',
+    'x',
+    'y',
+    'z',
+    'scale_with',
+    'weight',
+    'tracking',
+    'description',
+    'source',
+)
 
 
 @dataclass(frozen=True)
@@ -128,8 +136,9 @@ def load_marker_set(name: str | Path) -> MarkerSet:
     """
     path = Path(name) if str(name).endswith('.csv') else DATA / 'marker_sets' / f'{name}.csv'
     if not path.is_file():
-        raise MarkerSetError(f'marker set {name!r}: no file {path.name}; there are '
-                             f'{", ".join(available())}')
+        raise MarkerSetError(
+            f'marker set {name!r}: no file {path.name}; there are {", ".join(available())}'
+        )
     with path.open(newline='', encoding='utf-8') as file:
         reader = csv.DictReader(file)
         missing = [column for column in COLUMNS if column not in (reader.fieldnames or [])]
@@ -139,8 +148,9 @@ def load_marker_set(name: str | Path) -> MarkerSet:
     names = [marker.name for marker in markers]
     for marker in names:
         if names.count(marker) > 1:
-            raise MarkerSetError(f'{path.name}: marker {marker!r} occurs {names.count(marker)} '
-                                 'times')
+            raise MarkerSetError(
+                f'{path.name}: marker {marker!r} occurs {names.count(marker)} times'
+            )
     return MarkerSet(path.stem, markers)
 
 
@@ -160,15 +170,21 @@ def _parse(file: str, line: int, row: Mapping[str, str]) -> Marker:
         raise MarkerSetError(f'{where}: position of {row["marker"]!r} is incomplete')
     scale = row['scale_with'].split()
     if known.all() and len(scale) not in (1, 3):
-        raise MarkerSetError(f'{where}: scale_with {row["scale_with"]!r} names neither one nor '
-                             'three lengths')
+        raise MarkerSetError(
+            f'{where}: scale_with {row["scale_with"]!r} names neither one nor three lengths'
+        )
     for length in scale:
         if length not in _reference_lengths():
             raise MarkerSetError(f'{where}: scale_with {length!r} is no segment length')
     names = (scale * 3)[:3] if scale else ['', '', '']
-    return Marker(row['marker'], row['segment'],
-                  (numbers[0], numbers[1], numbers[2]) if known.all() else None,
-                  (names[0], names[1], names[2]), weight, row['tracking'] == 'yes')
+    return Marker(
+        row['marker'],
+        row['segment'],
+        (numbers[0], numbers[1], numbers[2]) if known.all() else None,
+        (names[0], names[1], names[2]),
+        weight,
+        row['tracking'] == 'yes',
+    )
 
 
 @cache

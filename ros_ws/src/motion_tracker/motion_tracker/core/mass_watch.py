@@ -6,12 +6,10 @@ from dataclasses import dataclass
 
 import numba
 import numpy as np
-import numpy.typing as npt
 
+from human_model.typing import Array
 from motion_tracker.core.errors import ForcePlateError
 from motion_tracker.core.force_plates import STANDARD_GRAVITY
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -48,8 +46,10 @@ class MassCheck:
     def __str__(self) -> str:
         """One line for a log, with the fields and their values."""
         box = f' and task.box_mass: {self.box_mass:.1f} kg' if self.box_mass else ''
-        return (f'force plates: {self.plate_mass:.1f} kg in quiet standing, subject.mass: '
-                f'{self.subject_mass:.1f} kg{box}, deviation {100 * self.deviation:+.1f} %')
+        return (
+            f'force plates: {self.plate_mass:.1f} kg in quiet standing, subject.mass: '
+            f'{self.subject_mass:.1f} kg{box}, deviation {100 * self.deviation:+.1f} %'
+        )
 
 
 class MassWatch:
@@ -80,8 +80,9 @@ class MassWatch:
 
     def __init__(self, subject_mass: float, tolerance: float) -> None:
         if not (subject_mass > 0 and tolerance > 0):
-            raise ForcePlateError(f'mass watch: {subject_mass} kg and a tolerance of {tolerance} '
-                                  'must be positive')
+            raise ForcePlateError(
+                f'mass watch: {subject_mass} kg and a tolerance of {tolerance} must be positive'
+            )
         self.check: MassCheck | None = None
         self._mass = subject_mass
         self._tolerance = tolerance
@@ -95,8 +96,9 @@ class MassWatch:
         """Whether nothing speaks against the masses: no quiet stretch yet, or a good last one."""
         return self.check is None or self.check.ok
 
-    def push(self, vertical: float, need: float, box_mass: float | None, rate: float,
-             ) -> MassCheck | None:
+    def push(
+        self, vertical: float, need: float, box_mass: float | None, rate: float
+    ) -> MassCheck | None:
         """Take one sample; return the check when there is a first one or its verdict changes.
 
         Parameters
@@ -124,8 +126,11 @@ class MassWatch:
             return None
         force, deviation, needed = _steadiness(self._recent)
         weight = self._mass * STANDARD_GRAVITY
-        if force <= 0 or deviation > self.QUIET * force \
-                or abs(needed - weight) > self.QUIET * weight:
+        if (
+            force <= 0
+            or deviation > self.QUIET * force
+            or abs(needed - weight) > self.QUIET * weight
+        ):
             return None
         # The next stretch shares no sample with this one.
         self._count = 0

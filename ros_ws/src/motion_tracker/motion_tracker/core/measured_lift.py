@@ -11,20 +11,13 @@ import numpy.typing as npt
 from human_model.motion import POINTS, Lift
 from human_model.report import SolveReport, SolveStatus
 from human_model.skeleton import Skeleton
+from human_model.typing import Array, IntArray
 from motion_tracker.core.dynamics import needed_force
 from motion_tracker.core.filters import derivatives, zero_phase
-from motion_tracker.core.force_plates import (
-    SIDES,
-    GroundReaction,
-    PlateGeometry,
-    ground_reaction,
-)
+from motion_tracker.core.force_plates import SIDES, GroundReaction, PlateGeometry, ground_reaction
 from motion_tracker.core.hand_force import HandForceEstimator
 from motion_tracker.core.streams import SampledStream, columns_at
 from motion_tracker.core.tracked import FrameRecord, MeasuredLift, TrackerSettings
-
-Array = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 
 _HANDS = (POINTS.index('hand_r'), POINTS.index('hand_l'))
 
@@ -46,18 +39,31 @@ class LiftBuilder:
         Stream of the box's centre.
     """
 
-    def __init__(self, skeleton: Skeleton, settings: TrackerSettings,
-                 plates: Mapping[str, PlateGeometry], wrenches: Mapping[str, SampledStream],
-                 box: SampledStream) -> None:
+    def __init__(
+        self,
+        skeleton: Skeleton,
+        settings: TrackerSettings,
+        plates: Mapping[str, PlateGeometry],
+        wrenches: Mapping[str, SampledStream],
+        box: SampledStream,
+    ) -> None:
         self._skeleton = skeleton
         self._settings = settings
         self._plates = plates
         self._wrenches = wrenches
         self._box = box
 
-    def build(self, lift_id: str, start: float, end: float, records: Sequence[FrameRecord],
-              rate: float, estimator: HandForceEstimator, support: float | None,
-              doubt: str = '') -> Iterator[MeasuredLift | None]:
+    def build(
+        self,
+        lift_id: str,
+        start: float,
+        end: float,
+        records: Sequence[FrameRecord],
+        rate: float,
+        estimator: HandForceEstimator,
+        support: float | None,
+        doubt: str = '',
+    ) -> Iterator[MeasuredLift | None]:
         """Filter and combine everything between start and end [s], step by step.
 
         One step takes about a millisecond, so that live frames need not wait for a whole lift.
@@ -85,9 +91,17 @@ class LiftBuilder:
         """
         return self._steps(lift_id, start, end, records, rate, copy(estimator), support, doubt)
 
-    def _steps(self, lift_id: str, start: float, end: float, records: Sequence[FrameRecord],
-               rate: float, estimator: HandForceEstimator, support: float | None, doubt: str,
-               ) -> Iterator[MeasuredLift | None]:
+    def _steps(
+        self,
+        lift_id: str,
+        start: float,
+        end: float,
+        records: Sequence[FrameRecord],
+        rate: float,
+        estimator: HandForceEstimator,
+        support: float | None,
+        doubt: str,
+    ) -> Iterator[MeasuredLift | None]:
         stamps = np.array([record.stamp for record in records])
         count = int(np.floor((stamps[-1] - stamps[0]) * rate + 1e-6)) + 1
         grid = stamps[0] + np.arange(count) / rate
@@ -97,8 +111,9 @@ class LiftBuilder:
         status, bridged = self._status(grid, stamps, good, records)
         status = status[inside]
         yield None
-        usable = good if good.sum() >= 2 else np.array(
-            [record.solution.used > 0 for record in records])
+        usable = (
+            good if good.sum() >= 2 else np.array([record.solution.used > 0 for record in records])
+        )
         rows = np.array([record.solution.q for record in records])[usable]
         even = columns_at(grid, stamps[usable], rows)
         yield None
@@ -122,11 +137,15 @@ class LiftBuilder:
         if box is not None:
             yield None
             ground = None if silent else forces['ground_force']
-            missing = None if ground is None else (
-                needed_force(self._skeleton, q, qd, qdd)[:, 2] - ground[:, :, 2].sum(axis=1))
+            missing = (
+                None
+                if ground is None
+                else (needed_force(self._skeleton, q, qd, qdd)[:, 2] - ground[:, :, 2].sum(axis=1))
+            )
             forces['box_position'] = box[0]
-            forces['hand_force'] = estimator.estimate(missing, places[0][:, _HANDS], *box, support,
-                                                      None)
+            forces['hand_force'] = estimator.estimate(
+                missing, places[0][:, _HANDS], *box, support, None
+            )
         yield None
         motion = self._skeleton.body_motion(times, q, qd, qdd, places=places, **forces)
         rms, largest = self._residuals(times, records, stamps, rate)
@@ -135,11 +154,17 @@ class LiftBuilder:
         lift = Lift(lift_id, 'measured', start, end, estimator.box_mass, motion, report)
         yield MeasuredLift(lift, status, rms, largest)
 
-    def _status(self, grid: Array, stamps: Array, good: npt.NDArray[np.bool_],
-                records: Sequence[FrameRecord]) -> tuple[IntArray, int]:
+    def _status(
+        self,
+        grid: Array,
+        stamps: Array,
+        good: npt.NDArray[np.bool_],
+        records: Sequence[FrameRecord],
+    ) -> tuple[IntArray, int]:
         """Status of every grid sample, and how many bad ones were bridged."""
-        nearest = np.clip(np.searchsorted(stamps, grid - 0.5 * (grid[1] - grid[0])), 0,
-                          len(stamps) - 1)
+        nearest = np.clip(
+            np.searchsorted(stamps, grid - 0.5 * (grid[1] - grid[0])), 0, len(stamps) - 1
+        )
         lost = np.abs(stamps[nearest] - grid) > 0.5 * (grid[1] - grid[0])
         codes = np.array([int(record.solution.status) for record in records], dtype=np.int64)
         status = np.where(lost, int(SolveStatus.TRACKER_MARKERS_MISSING), codes[nearest])
@@ -155,19 +180,25 @@ class LiftBuilder:
 
     def _foot(self, name: str, times: Array) -> GroundReaction | None:
         """Ground reaction on one foot; None if its plate has no samples for all of the lift."""
-        rows = self._wrenches[name].zero_phase_at(times, self._settings.plate_cutoff,
-                                                  self._settings.margin)
+        rows = self._wrenches[name].zero_phase_at(
+            times, self._settings.plate_cutoff, self._settings.margin
+        )
         if rows is None:
             return None
-        return ground_reaction(rows[:, :3], rows[:, 3:], self._plates[name],
-                               self._settings.force_threshold)
+        return ground_reaction(
+            rows[:, :3], rows[:, 3:], self._plates[name], self._settings.force_threshold
+        )
 
-    def _ground(self, times: Array, feet: Mapping[str, GroundReaction | None],
-                ) -> tuple[dict[str, Array], list[str]]:
+    def _ground(
+        self, times: Array, feet: Mapping[str, GroundReaction | None]
+    ) -> tuple[dict[str, Array], list[str]]:
         """Ground reaction by foot, and the plates without samples for all of the lift."""
         n = len(times)
-        forces = {'ground_force': np.zeros((n, 2, 3)), 'cop': np.full((n, 2, 3), np.nan),
-                  'free_moment': np.zeros((n, 2, 3))}
+        forces = {
+            'ground_force': np.zeros((n, 2, 3)),
+            'cop': np.full((n, 2, 3), np.nan),
+            'free_moment': np.zeros((n, 2, 3)),
+        }
         for side, foot in enumerate(feet.values()):
             if foot is not None:
                 forces['ground_force'][:, side] = foot.force
@@ -175,8 +206,13 @@ class LiftBuilder:
                 forces['free_moment'][:, side] = foot.free_moment
         return forces, [name for name, foot in feet.items() if foot is None]
 
-    def _carried(self, grid: Array, inside: npt.NDArray[np.bool_], rate: float,
-                 estimator: HandForceEstimator) -> tuple[Array, Array] | None:
+    def _carried(
+        self,
+        grid: Array,
+        inside: npt.NDArray[np.bool_],
+        rate: float,
+        estimator: HandForceEstimator,
+    ) -> tuple[Array, Array] | None:
         """Box position (n, 3) [m] and acceleration (n, 3) [m/s^2]; None if there is no box."""
         if estimator.box_mass == 0.0:
             return None
@@ -184,12 +220,14 @@ class LiftBuilder:
         known = np.isfinite(rows[:, 0])
         if known.sum() < 2 or not known[inside].mean() > 0.5:
             return None
-        box = zero_phase(columns_at(grid, grid[known], rows[known]), rate,
-                         self._settings.motion_cutoff)
+        box = zero_phase(
+            columns_at(grid, grid[known], rows[known]), rate, self._settings.motion_cutoff
+        )
         return box[inside], derivatives(box, rate)[1][inside]
 
-    def _residuals(self, times: Array, records: Sequence[FrameRecord], stamps: Array,
-                   rate: float) -> tuple[Array, Array]:
+    def _residuals(
+        self, times: Array, records: Sequence[FrameRecord], stamps: Array, rate: float
+    ) -> tuple[Array, Array]:
         rms, largest = np.full(len(times), np.nan), np.full(len(times), np.nan)
         at = np.searchsorted(times, stamps - 0.5 / rate)
         for index, record in zip(at, records, strict=True):
@@ -198,11 +236,20 @@ class LiftBuilder:
                 largest[index] = record.solution.maximum
         return rms, largest
 
-    def _report(self, records: Sequence[FrameRecord], inside: npt.NDArray[np.bool_],
-                status: IntArray, bridged: int, silent: Sequence[str], doubt: str) -> SolveReport:
+    def _report(
+        self,
+        records: Sequence[FrameRecord],
+        inside: npt.NDArray[np.bool_],
+        status: IntArray,
+        bridged: int,
+        silent: Sequence[str],
+        doubt: str,
+    ) -> SolveReport:
         solutions = [record.solution for record in records]
-        words = [f'{int(inside.sum())} samples, markers '
-                 f'{1000 * np.sqrt(np.nanmean([s.rms**2 for s in solutions])):.1f} mm rms']
+        words = [
+            f'{int(inside.sum())} samples, markers '
+            f'{1000 * np.sqrt(np.nanmean([s.rms**2 for s in solutions])):.1f} mm rms'
+        ]
         if bridged:
             words.append(f'{bridged} bad frames bridged by interpolation')
         bad = status[status != 0]
@@ -215,13 +262,17 @@ class LiftBuilder:
             if reasons:
                 words.append(reasons[0])
         if silent:
-            words.append('no complete ground reaction: samples missing of the '
-                         + ' and the '.join(f'{name} plate' for name in silent))
+            words.append(
+                'no complete ground reaction: samples missing of the '
+                + ' and the '.join(f'{name} plate' for name in silent)
+            )
         if doubt:
             words.append(doubt)
         return SolveReport(
-            status=worst, message='; '.join(words),
+            status=worst,
+            message='; '.join(words),
             iterations=sum(s.iterations for s in solutions),
             objective=float(np.nanmean([s.objective for s in solutions])),
             primal_residual=float(np.nanmax([s.maximum for s in solutions])),
-            dual_residual=float(np.nanmax([s.stationarity for s in solutions])))
+            dual_residual=float(np.nanmax([s.stationarity for s in solutions])),
+        )

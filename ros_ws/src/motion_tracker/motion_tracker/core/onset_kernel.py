@@ -4,14 +4,12 @@
 
 import numba
 import numpy as np
-import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
+from human_model.typing import Array
 
 
 @numba.njit(cache=True)
-def onset(time: Array, height: Array, instants: Array, smooth: bool,
-          ) -> tuple[float, float, float]:
+def onset(time: Array, height: Array, instants: Array, smooth: bool) -> tuple[float, float, float]:
     """Sum of squares [m^2], instant [s] and level [m] of the best onset of one shape.
 
     Tries all ``instants`` before the last sample. With x the time since the instant and X its

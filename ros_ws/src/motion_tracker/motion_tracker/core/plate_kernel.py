@@ -4,15 +4,22 @@
 
 import numba
 import numpy as np
-import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
+from human_model.typing import Array, BoolArray
 
 
 @numba.njit(cache=True)
-def _foot(force: Array, moment: Array, rotation: Array, origin: Array, surface: float,
-          threshold: float, total: Array, cop: Array, free_moment: Array) -> bool:
+def _foot(
+    force: Array,
+    moment: Array,
+    rotation: Array,
+    origin: Array,
+    surface: float,
+    threshold: float,
+    total: Array,
+    cop: Array,
+    free_moment: Array,
+) -> bool:
     """Write force, centre of pressure and free moment of one foot (3,); whether it is loaded."""
     f, m = np.zeros(3), np.zeros(3)
     for i in range(3):
@@ -34,8 +41,9 @@ def _foot(force: Array, moment: Array, rotation: Array, origin: Array, surface: 
 
 
 @numba.njit(cache=True)
-def reaction(force: Array, moment: Array, rotation: Array, origin: Array, surface: float,
-             threshold: float) -> tuple[Array, Array, Array, BoolArray]:
+def reaction(
+    force: Array, moment: Array, rotation: Array, origin: Array, surface: float, threshold: float
+) -> tuple[Array, Array, Array, BoolArray]:
     """Force, centre of pressure and free moment (n, 3) in the world, and whether loaded (n,).
 
     The arguments, the results and the equations are those of `force_plates.ground_reaction`.
@@ -44,14 +52,24 @@ def reaction(force: Array, moment: Array, rotation: Array, origin: Array, surfac
     total, cop, free_moment = np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3))
     loaded = np.empty(n, dtype=np.bool_)
     for k in range(n):
-        loaded[k] = _foot(force[k], moment[k], rotation, origin, surface, threshold, total[k],
-                          cop[k], free_moment[k])
+        loaded[k] = _foot(
+            force[k],
+            moment[k],
+            rotation,
+            origin,
+            surface,
+            threshold,
+            total[k],
+            cop[k],
+            free_moment[k],
+        )
     return total, cop, free_moment, loaded
 
 
 @numba.njit(cache=True)
-def feet(wrench: Array, rotation: Array, origin: Array, surface: Array, threshold: float,
-         ) -> tuple[Array, Array, Array]:
+def feet(
+    wrench: Array, rotation: Array, origin: Array, surface: Array, threshold: float
+) -> tuple[Array, Array, Array]:
     """Force, centre of pressure and free moment (1, feet, 3) in the world, of one instant.
 
     As `reaction`, of feet on a plate each: wrenches (feet, 6), rotations (feet, 3, 3), origins
@@ -60,6 +78,15 @@ def feet(wrench: Array, rotation: Array, origin: Array, surface: Array, threshol
     shape = (1, wrench.shape[0], 3)
     total, cop, free_moment = np.empty(shape), np.empty(shape), np.empty(shape)
     for k in range(wrench.shape[0]):
-        _foot(wrench[k, :3], wrench[k, 3:], rotation[k], origin[k], surface[k], threshold,
-              total[0, k], cop[0, k], free_moment[0, k])
+        _foot(
+            wrench[k, :3],
+            wrench[k, 3:],
+            rotation[k],
+            origin[k],
+            surface[k],
+            threshold,
+            total[0, k],
+            cop[0, k],
+            free_moment[0, k],
+        )
     return total, cop, free_moment

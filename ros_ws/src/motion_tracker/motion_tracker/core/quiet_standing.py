@@ -18,13 +18,12 @@ from human_model.motion import POINTS
 from human_model.skeleton import Skeleton
 from human_model.skeleton_3d import Skeleton3D
 from human_model.subject import Subject
+from human_model.typing import Array
 from motion_tracker.core.errors import TrackerError
 from motion_tracker.core.filters import derivatives, zero_phase
 from motion_tracker.core.inverse_kinematics import InverseKinematics
 from motion_tracker.core.marker_model import model_for
 from motion_tracker.core.marker_set import MarkerSet
-
-Array = npt.NDArray[np.float64]
 
 #: Cut-off of the motion [Hz], as in the thesis (section 3.4).
 _CUTOFF = 6.0
@@ -73,8 +72,9 @@ class QuietStanding:
     qdd: Array
 
 
-def coordinates_of(subject: Subject, marker_set: MarkerSet | None, names: Sequence[str],
-                   positions: npt.ArrayLike) -> tuple[Skeleton3D, Array]:
+def coordinates_of(
+    subject: Subject, marker_set: MarkerSet | None, names: Sequence[str], positions: npt.ArrayLike
+) -> tuple[Skeleton3D, Array]:
     """Skeleton of a subject and its coordinates (n, n_q); NaN where a frame is not good data.
 
     ``positions`` (n, n_markers, 3) [m] of the markers ``names``; others than the model's are
@@ -95,8 +95,13 @@ def coordinates_of(subject: Subject, marker_set: MarkerSet | None, names: Sequen
     return skeleton, found
 
 
-def find_quiet_standing(skeleton: Skeleton, rate: float, q: npt.ArrayLike, force: npt.ArrayLike,
-                        settings: StandingSettings | None = None) -> QuietStanding:
+def find_quiet_standing(
+    skeleton: Skeleton,
+    rate: float,
+    q: npt.ArrayLike,
+    force: npt.ArrayLike,
+    settings: StandingSettings | None = None,
+) -> QuietStanding:
     """Find the frames in which a person stands still with empty hands.
 
     Parameters
@@ -129,18 +134,21 @@ def find_quiet_standing(skeleton: Skeleton, rate: float, q: npt.ArrayLike, force
         still = _still(skeleton, rate, smooth, forces[run], wanted)
         # The filter and the spline know less of the ends: one period of the cut-off is left out.
         end = round(rate / _CUTOFF)
-        still[:end] = still[len(still) - end:] = False
+        still[:end] = still[len(still) - end :] = False
         found.append((run[still], smooth[still], qd[still], qdd[still]))
     frames, *rows = (np.concatenate(parts) for parts in zip(*found, strict=True))
     if len(frames) < wanted.shortest * rate:
-        raise TrackerError(f'quiet standing: {len(frames) / rate:.2f} s found, '
-                           f'{wanted.shortest:g} s upright, slower than {wanted.speed:g} m/s '
-                           'and with empty hands are needed')
+        raise TrackerError(
+            f'quiet standing: {len(frames) / rate:.2f} s found, '
+            f'{wanted.shortest:g} s upright, slower than {wanted.speed:g} m/s '
+            'and with empty hands are needed'
+        )
     return QuietStanding(frames, *rows)
 
 
-def missing_moment(skeleton: Skeleton, standing: QuietStanding, force: Array, moment: Array,
-                   ) -> Array:
+def missing_moment(
+    skeleton: Skeleton, standing: QuietStanding, force: Array, moment: Array
+) -> Array:
     """Moment (n, 3) [N m] about the centre of mass that the ground does not give, world axes.
 
     ``force`` and ``moment`` (n, 3) of all plates together on the person at the frames of
@@ -166,8 +174,9 @@ def _runs(good: npt.NDArray[np.bool_]) -> list[npt.NDArray[np.int64]]:
     return [run for run in np.split(where, np.flatnonzero(np.diff(where) > 1) + 1) if len(run)]
 
 
-def _still(skeleton: Skeleton, rate: float, q: Array, force: Array,
-           wanted: StandingSettings) -> npt.NDArray[np.bool_]:
+def _still(
+    skeleton: Skeleton, rate: float, q: Array, force: Array, wanted: StandingSettings
+) -> npt.NDArray[np.bool_]:
     """Say of each frame (n,) whether it is one of quiet standing."""
     points = skeleton.point_array(q)
     trunk = points[:, POINTS.index('c7')] - points[:, POINTS.index('pelvis')]
@@ -176,6 +185,9 @@ def _still(skeleton: Skeleton, rate: float, q: Array, force: Array,
     mass_centre = np.array([skeleton.centre_of_mass(row) for row in q])
     speed = np.linalg.norm(np.gradient(mass_centre, 1.0 / rate, axis=0), axis=1)
     carried = force[:, 2] / (skeleton.total_mass * GRAVITY)
-    return np.asarray((speed <= wanted.speed) & (lean <= wanted.lean)
-                      & (knees.max(axis=1) <= wanted.knee)
-                      & (np.abs(carried - 1.0) <= wanted.weight))
+    return np.asarray(
+        (speed <= wanted.speed)
+        & (lean <= wanted.lean)
+        & (knees.max(axis=1) <= wanted.knee)
+        & (np.abs(carried - 1.0) <= wanted.weight)
+    )

@@ -6,15 +6,14 @@ import csv
 from collections.abc import Mapping
 
 import numpy as np
-import numpy.typing as npt
 
+from human_model.typing import Array
 from motion_tracker.core.marker_set import DATA, MarkerSet
 
-Array = npt.NDArray[np.float64]
 
-
-def measured_lengths(marker_set: MarkerSet, markers: Mapping[str, Array],
-                     predicted: Mapping[str, float]) -> dict[str, float]:
+def measured_lengths(
+    marker_set: MarkerSet, markers: Mapping[str, Array], predicted: Mapping[str, float]
+) -> dict[str, float]:
     """Lengths [m] from pairs of landmarks, as far as all of their markers are there.
 
     A length is the predicted one times the ratio of the landmarks' mean distance to that of their
@@ -37,8 +36,13 @@ def measured_lengths(marker_set: MarkerSet, markers: Mapping[str, Array],
             if row['marker_set'] != marker_set.name or not all(n in markers for n in names):
                 continue
             seen, expected = (
-                np.mean([np.linalg.norm(at[a] - at[b])
-                         for a, b in zip(names[::2], names[1::2], strict=True)])
-                for at in (markers, placed))
+                np.mean(
+                    [
+                        np.linalg.norm(at[a] - at[b])
+                        for a, b in zip(names[::2], names[1::2], strict=True)
+                    ]
+                )
+                for at in (markers, placed)
+            )
             found[row['length']] = float(predicted[row['length']] * seen / expected)
     return found

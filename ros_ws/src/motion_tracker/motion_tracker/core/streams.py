@@ -10,11 +10,10 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from human_model.typing import Array
 from motion_tracker.core import filter_kernel
 from motion_tracker.core.errors import TrackerError
 from motion_tracker.core.filters import CausalFilter, zero_phase
-
-Array = npt.NDArray[np.float64]
 
 #: Samples from which the rate of a stream is taken.
 RATE_SAMPLES = 10
@@ -67,8 +66,9 @@ class SampledStream:
         Of a causal filter every sample passes [Hz]; None: no filter.
     """
 
-    def __init__(self, name: str, channels: int, counts: Counter[str],
-                 cutoff: float | None = None) -> None:
+    def __init__(
+        self, name: str, channels: int, counts: Counter[str], cutoff: float | None = None
+    ) -> None:
         self.name = name
         self.rate = 0.0
         #: Stamp of the newest sample [s]; minus infinity when there is none.
@@ -164,14 +164,19 @@ class SampledStream:
         """
         first = bisect_left(self._stamps, times[0] - margin)
         last = bisect_right(self._stamps, times[-1] + margin)
-        if last - first < 2 or self._stamps[first] > times[0] + SAME \
-                or self._stamps[last - 1] < times[-1] - SAME:
+        if (
+            last - first < 2
+            or self._stamps[first] > times[0] + SAME
+            or self._stamps[last - 1] < times[-1] - SAME
+        ):
             return None
         stamps = np.array(self._stamps[first:last])
         if np.diff(stamps).max() > self._longest_gap():
             return None
-        grid = stamps[0] + np.arange(int(np.floor((stamps[-1] - stamps[0]) * self.rate + 1e-6)) + 1
-                                     ) / self.rate
+        grid = (
+            stamps[0]
+            + np.arange(int(np.floor((stamps[-1] - stamps[0]) * self.rate + 1e-6)) + 1) / self.rate
+        )
         even = columns_at(grid, stamps, self._raw[first:last])
         return columns_at(times, grid, zero_phase(even, self.rate, cutoff))
 
@@ -183,9 +188,9 @@ class SampledStream:
         self._pass(len(self._stamps))
         del self._stamps[:drop]
         kept = len(self._stamps)
-        self._raw[:kept] = self._raw[drop:drop + kept]
+        self._raw[:kept] = self._raw[drop : drop + kept]
         if self._filter is not None:
-            self._filtered[:kept] = self._filtered[drop:drop + kept]
+            self._filtered[:kept] = self._filtered[drop : drop + kept]
             self._passed = kept
 
     def _longest_gap(self) -> float:
@@ -217,8 +222,8 @@ class SampledStream:
     def _pass(self, end: int) -> None:
         """Let the rows before ``end`` that wait for it through the filter."""
         if self._filter is not None and self._passed < end:
-            rows = self._filter.values(self._raw[self._passed:end])
-            self._filtered[self._passed:end] = rows
+            rows = self._filter.values(self._raw[self._passed : end])
+            self._filtered[self._passed : end] = rows
             self._passed = end
 
     def _between(self, rows: Array, time: float) -> Array | None:

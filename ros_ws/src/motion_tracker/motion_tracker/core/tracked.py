@@ -9,14 +9,13 @@ import numpy.typing as npt
 
 from human_model.motion import BodyMotion, Lift
 from human_model.report import SolveStatus
+from human_model.typing import Array
 from motion_tracker.core.errors import TrackerError
 from motion_tracker.core.filters import MOTION_CUTOFF, PLATE_CUTOFF
 from motion_tracker.core.force_plates import total_cop
 from motion_tracker.core.hand_force import HandForceSettings
 from motion_tracker.core.ik_types import IKSettings, IKSolution
 from motion_tracker.core.lift_events import LiftEvent, LiftEventSettings
-
-Array = npt.NDArray[np.float64]
 
 FROM_BOX = 'box'
 FROM_HANDS = 'hands'
@@ -59,8 +58,15 @@ class TrackerSettings:
 
     def __post_init__(self) -> None:
         """Check that every number is positive."""
-        for name in ('motion_cutoff', 'plate_cutoff', 'force_threshold', 'wait', 'longest_gap',
-                     'margin', 'mass_tolerance'):
+        for name in (
+            'motion_cutoff',
+            'plate_cutoff',
+            'force_threshold',
+            'wait',
+            'longest_gap',
+            'margin',
+            'mass_tolerance',
+        ):
             value = getattr(self, name)
             if not (np.isfinite(value) and value > 0):
                 raise TrackerError(f'tracker.{name}: must be positive, got {value}')

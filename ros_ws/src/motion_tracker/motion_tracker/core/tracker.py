@@ -17,6 +17,7 @@ import numpy.typing as npt
 from human_model.motion import POINTS
 from human_model.skeleton_3d import Skeleton3D
 from human_model.subject import Subject
+from human_model.typing import Array
 from motion_tracker.core.arrival import Arrival
 from motion_tracker.core.errors import TrackerError
 from motion_tracker.core.filters import settling_time
@@ -35,15 +36,7 @@ from motion_tracker.core.marker_set import MarkerSet
 from motion_tracker.core.mass_watch import MassWatch
 from motion_tracker.core.measured_lift import LiftBuilder
 from motion_tracker.core.streams import RATE_SAMPLES, SAME, SampledStream, rate_of
-from motion_tracker.core.tracked import (
-    FROM_BOX,
-    FROM_HANDS,
-    Notice,
-    Output,
-    TrackerSettings,
-)
-
-Array = npt.NDArray[np.float64]
+from motion_tracker.core.tracked import FROM_BOX, FROM_HANDS, Notice, Output, TrackerSettings
 
 #: Numbers of a sample of a plate, and of the box.
 _WRENCH, _PLACE = 6, 3
@@ -77,11 +70,17 @@ class MotionTracker:
         Refused or lost input by kind.
     """
 
-    def __init__(self, subject: Subject, marker_set: MarkerSet | None, box_mass: float = 0.0,
-                 box_size: npt.ArrayLike = (0.0, 0.0, 0.0),
-                 plates: Mapping[str, PlateGeometry] | None = None,
-                 settings: TrackerSettings | None = None, first_lift: int = 1,
-                 clock: Callable[[], float] | None = None) -> None:
+    def __init__(
+        self,
+        subject: Subject,
+        marker_set: MarkerSet | None,
+        box_mass: float = 0.0,
+        box_size: npt.ArrayLike = (0.0, 0.0, 0.0),
+        plates: Mapping[str, PlateGeometry] | None = None,
+        settings: TrackerSettings | None = None,
+        first_lift: int = 1,
+        clock: Callable[[], float] | None = None,
+    ) -> None:
         self.settings = settings or TrackerSettings()
         self.subject = subject
         self.skeleton = Skeleton3D.of(subject)
@@ -89,17 +88,23 @@ class MotionTracker:
         self.inverse_kinematics = InverseKinematics(self.skeleton, self.model, self.settings.ik)
         self.counts: Counter[str] = Counter()
         self._plates = {name: (plates or {}).get(name, PlateGeometry(name)) for name in SIDES}
-        self._wrenches = {name: SampledStream(f'{name} plate', _WRENCH, self.counts,
-                                              self.settings.plate_cutoff) for name in SIDES}
+        self._wrenches = {
+            name: SampledStream(f'{name} plate', _WRENCH, self.counts, self.settings.plate_cutoff)
+            for name in SIDES
+        }
         self._box = SampledStream('box', _PLACE, self.counts)
         self._hand_force = HandForceEstimator(box_mass, box_size, self.settings.hand_force)
-        builder = LiftBuilder(self.skeleton, self.settings, self._plates, self._wrenches,
-                              self._box)
+        builder = LiftBuilder(
+            self.skeleton, self.settings, self._plates, self._wrenches, self._box
+        )
         self._lifts = LiftRecords(builder, self.settings.margin, first_lift)
-        self._frames = MarkerFrames(self.model.names, marker_set.names if marker_set else (),
-                                    self.counts)
-        self._detectors = {FROM_BOX: LiftEventDetector(self.settings.events),
-                           FROM_HANDS: LiftEventDetector(self.settings.events)}
+        self._frames = MarkerFrames(
+            self.model.names, marker_set.names if marker_set else (), self.counts
+        )
+        self._detectors = {
+            FROM_BOX: LiftEventDetector(self.settings.events),
+            FROM_HANDS: LiftEventDetector(self.settings.events),
+        }
         self._arrival = Arrival(self.settings.wait, self.settings.longest_gap, clock)
         self._queue: deque[tuple[float, Array, IKSolution, float]] = deque()
         self._newest = -np.inf
@@ -109,8 +114,10 @@ class MotionTracker:
         # Frames that have left something to do, and the last of them.
         self._left = 0
         self._latest = -np.inf
-        self._status = LiveStatus(MassWatch(subject.mass, self.settings.mass_tolerance),
-                                  settling_time(self.settings.motion_cutoff))
+        self._status = LiveStatus(
+            MassWatch(subject.mass, self.settings.mass_tolerance),
+            settling_time(self.settings.motion_cutoff),
+        )
         self._notices: list[Output] = []
 
     @property
@@ -128,8 +135,9 @@ class MotionTracker:
         """Rate of the marker frames [Hz]; 0 until it is known."""
         return self._rate
 
-    def push_markers(self, stamp: float, names: Sequence[str], positions: npt.ArrayLike,
-                     ) -> list[Output]:
+    def push_markers(
+        self, stamp: float, names: Sequence[str], positions: npt.ArrayLike
+    ) -> list[Output]:
         """Take one marker frame.
 
         Parameters
@@ -154,8 +162,10 @@ class MotionTracker:
             self.counts[f'markers: {kind}'] += 1
             return []
         target, unknown = self._frames.arrange(stamp, names, positions)
-        self._notices += [Notice(f'marker {name!r} is not tracked: it has no place in the marker '
-                                 'model', True) for name in unknown]
+        self._notices += [
+            Notice(f'marker {name!r} is not tracked: it has no place in the marker model', True)
+            for name in unknown
+        ]
         self._newest = stamp
         # The fit needs nothing but markers: it is done while plates and box are on their way.
         solution = self.inverse_kinematics.solve(target, self._last_q)
@@ -164,8 +174,13 @@ class MotionTracker:
         self._queue.append((stamp, target, solution, self._arrival.arrive()))
         return self._work(None)
 
-    def push_wrench(self, side: str, stamp: float, force: Sequence[float] | Array,
-                    moment: Sequence[float] | Array) -> list[Output]:
+    def push_wrench(
+        self,
+        side: str,
+        stamp: float,
+        force: Sequence[float] | Array,
+        moment: Sequence[float] | Array,
+    ) -> list[Output]:
         """Take one sample of a force plate: force [N] and moment about its origin [N m] (3,)."""
         stream = self._wrenches.get(side)
         if stream is None:
@@ -234,10 +249,21 @@ class MotionTracker:
         self._rate = rate_of(stamps, 'markers')
         speed = initial_speed(stamps, [target for _, target, *_ in self._queue])
         if speed > self.settings.events.rest_speed:
-            self._status.settle(stamps[0], 'the filters settle: the recording begins in motion, '
-                                           f'its markers move at {speed:.2f} m/s rms')
-        self._live = LiveMotion(self.skeleton, self._rate, self.settings, self._plates,
-                                self._wrenches, self._hand_force, self._status, self.counts)
+            self._status.settle(
+                stamps[0],
+                'the filters settle: the recording begins in motion, '
+                f'its markers move at {speed:.2f} m/s rms',
+            )
+        self._live = LiveMotion(
+            self.skeleton,
+            self._rate,
+            self.settings,
+            self._plates,
+            self._wrenches,
+            self._hand_force,
+            self._status,
+            self.counts,
+        )
 
     def _frame(self, stamp: float, solution: IKSolution) -> list[Output]:
         assert self._live is not None
@@ -249,8 +275,9 @@ class MotionTracker:
             return []
         box = self._box.raw_at(stamp) if self._hand_force.box_mass > 0 else None
         events = self._detect(stamp, solution, box)
-        frame, notices = self._live.sample(stamp, solution, box, self._lifts.lifting,
-                                           self._lifts.end_known)
+        frame, notices = self._live.sample(
+            stamp, solution, box, self._lifts.lifting, self._lifts.end_known
+        )
         self._begin_builds(stamp)
         return [frame, *notices, *events]
 
@@ -261,8 +288,9 @@ class MotionTracker:
             events = self._detectors[FROM_BOX].push(stamp, float(box[2]))
             return self._lifts.take(events, FROM_BOX)
         heights = self.skeleton.point_array(solution.q)[0, :, 2]
-        events = self._detectors[FROM_HANDS].push(stamp, float(heights[HANDS].mean()),
-                                                  float(heights[_SHOULDERS].mean()))
+        events = self._detectors[FROM_HANDS].push(
+            stamp, float(heights[HANDS].mean()), float(heights[_SHOULDERS].mean())
+        )
         return self._lifts.take(events, FROM_HANDS)
 
     def _begin_builds(self, now: float) -> None:

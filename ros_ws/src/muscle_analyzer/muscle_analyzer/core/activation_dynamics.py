@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Activation dynamics: which excitations would have made the activations of a lift (equation 4.13).
+"""Activation dynamics: excitations that would produce the activations of a lift (equation 4.13).
 
 Static optimisation takes each instant by itself.  First-order activation dynamics,
 ``da/dt = (u - a) / tau(a, u)``, say afterwards which excitation u each activation course needs,
@@ -18,11 +17,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from human_model.typing import Array
 from muscle_analyzer.core.exceptions import InputArrayError
-
-Array = NDArray[np.float64]
 
 #: An excitation less than this outside 0 to 1 is so by rounding.
 ROUNDING = 1e-9
@@ -30,8 +28,7 @@ ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class ActivationDynamics:
-    """
-    Time constants of a muscle's activation.
+    """Time constants of a muscle's activation.
 
     Attributes
     ----------
@@ -54,8 +51,7 @@ class ActivationDynamics:
                 raise InputArrayError(f'{name} {getattr(self, name)} s must be positive')
 
     def rate(self, activation: ArrayLike, excitation: ArrayLike) -> Array:
-        """
-        Give da/dt (equation 4.13) [1/s].
+        """Give da/dt (equation 4.13) [1/s].
 
         Parameters
         ----------
@@ -69,8 +65,7 @@ class ActivationDynamics:
         return np.asarray((u - a) / np.where(u > a, rising, falling))
 
     def excitation(self, time: Array, activation: Array) -> Array:
-        """
-        Give the excitation that makes an activation course; equation 4.13 solved for u.
+        """Give the excitation that makes an activation course; equation 4.13 solved for u.
 
         Parameters
         ----------
@@ -100,9 +95,7 @@ class ActivationDynamics:
             raise InputArrayError(f'time does not increase at sample {k + 1} ({time[k + 1]} s)')
         slope = np.gradient(activation, time, axis=0)
         shape = 0.5 + 1.5 * activation
-        tau = np.where(
-            slope > 0.0, self.activation_time * shape, self.deactivation_time / shape
-        )
+        tau = np.where(slope > 0.0, self.activation_time * shape, self.deactivation_time / shape)
         return np.asarray(activation + tau * slope)
 
 

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-From a body motion to muscle forces and the L5-S1 reaction: the pipeline of this package.
+"""From a body motion to muscle forces and the L5-S1 reaction: the pipeline of this package.
 
 One sample goes through transfer to the musculoskeletal model, inverse dynamics, static
 optimisation (equation 4.10) and joint reaction (equation 4.11).  Live blocks of one sample and
@@ -13,7 +12,7 @@ from __future__ import annotations
 import time
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from human_model.motion import BodyMotion
 from human_model.named_subjects import named_subject, subject_names
@@ -34,8 +33,6 @@ from muscle_analyzer.core.subject_model import lifting_model_path, subject_model
 from muscle_analyzer.core.torque_limits import JointTorques, TorqueLimits
 from muscle_analyzer.core.transfer import MotionTransfer
 
-Array = NDArray[np.float64]
-
 #: Where a motion may come from.
 SOURCES = ('live', 'measured', 'predicted')
 #: Motions that come while live ones go on: what they need is built before.
@@ -47,8 +44,7 @@ _SKELETONS: dict[str, type[Skeleton2D] | type[Skeleton3D]] = {
 
 
 class MuscleAnalyzer:
-    """
-    Muscle analysis of one subject.
+    """Muscle analysis of one subject.
 
     Call `configure` once per subject, then `analyze` on block after block.  A live stream of
     blocks is warm-started from sample to sample; lifts start afresh.
@@ -63,8 +59,7 @@ class MuscleAnalyzer:
         self._limits: dict[str, TorqueLimits] = {}
 
     def configure(self, subject: Subject) -> None:
-        """
-        Scale the model to a subject and prepare everything that a sample needs.
+        """Scale the model to a subject and prepare everything that a sample needs.
 
         Raises
         ------
@@ -92,8 +87,7 @@ class MuscleAnalyzer:
         self._warm_up(skeleton)
 
     def prepare(self) -> None:
-        """
-        Do what takes time and needs no subject: read the model, load the compiled functions.
+        """Do what takes time and needs no subject: read the model, load the compiled functions.
 
         Raises
         ------
@@ -131,8 +125,7 @@ class MuscleAnalyzer:
         return self._streams[key]
 
     def new_transfer(self, skeleton: str) -> MotionTransfer:
-        """
-        Give a transfer of its own from a skeleton to the subject's model, as `analyze` uses it.
+        """Give a transfer of its own from a skeleton to the subject's model, as `analyze` uses it.
 
         Parameters
         ----------
@@ -156,8 +149,7 @@ class MuscleAnalyzer:
         tracker_status: ArrayLike | None = None,
         continued: bool = False,
     ) -> MuscleAnalysis:
-        """
-        Analyse a block of one or more samples.
+        """Analyse a block of one or more samples.
 
         Parameters
         ----------
@@ -205,8 +197,7 @@ class MuscleAnalyzer:
         return solver.solve(poses, motion, tracked, origin, elapsed)
 
     def joint_torques(self, analysis: MuscleAnalysis, motion: BodyMotion) -> JointTorques:
-        """
-        Put the joint torques of an analysis beside the dynamic strength of the subject's joints.
+        """Put the joint torques of an analysis beside the dynamic strength of the joints.
 
         Parameters
         ----------

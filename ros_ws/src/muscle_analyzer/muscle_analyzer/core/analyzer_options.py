@@ -14,8 +14,7 @@ from muscle_analyzer.core.static_optimization import StaticOptimizationOptions
 
 @dataclass(frozen=True)
 class MuscleAnalyzerOptions:
-    """
-    Settings of the analysis.
+    """Settings of the analysis.
 
     Attributes
     ----------

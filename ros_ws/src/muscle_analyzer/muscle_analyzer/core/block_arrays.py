@@ -13,16 +13,12 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from human_model.typing import Array, BoolArray, IntArray
 from muscle_analyzer.core.disc_frame import DEGREE
 from muscle_analyzer.core.disc_pose import world_poses
 from muscle_analyzer.core.held import Held
 from muscle_analyzer.core.inverse_dynamics import add_force
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
 
 #: Distance [m] and angle [rad] that hands, feet and trunk should keep in the transfer (the
 #: project's goals); what is above them is told in the report's message.
@@ -30,8 +26,7 @@ DISTANCE_GOAL, ANGLE_GOAL = 0.005, math.radians(1.0)
 
 
 class Places(NamedTuple):
-    """
-    Numbers of a model's parts; pairs are [right, left].
+    """Numbers of a model's parts; pairs are [right, left].
 
     Attributes
     ----------
@@ -59,8 +54,7 @@ class Places(NamedTuple):
 
 
 class OutsideForces(NamedTuple):
-    """
-    Forces on hands and feet; see `human_model.motion.BodyMotion`.
+    """Forces on hands and feet; see `human_model.motion.BodyMotion`.
 
     Attributes
     ----------
@@ -81,8 +75,7 @@ class OutsideForces(NamedTuple):
 
 
 class Loaded(NamedTuple):
-    """
-    Wrenches on the bodies, and which feet have a centre of pressure; see `outside_wrenches`.
+    """Wrenches on the bodies, and which feet have a centre of pressure; see `outside_wrenches`.
 
     Attributes
     ----------
@@ -100,8 +93,7 @@ class Loaded(NamedTuple):
 
 
 class SolvedArrays(NamedTuple):
-    """
-    Arrays of a block that the solver does not have in this form; see `MuscleAnalysis`.
+    """Arrays of a block that the solver does not have in this form; see `MuscleAnalysis`.
 
     Attributes
     ----------
@@ -138,8 +130,7 @@ def _from_opensim(vector: Array, out: Array) -> None:
 
 @njit(cache=True)
 def outside_wrenches(held: Held[Places], forces: OutsideForces) -> Loaded:
-    """
-    Give the wrenches of ground and box on the bodies.
+    """Give the wrenches of ground and box on the bodies.
 
     A foot without centre of pressure is not pushed.
 
@@ -217,8 +208,7 @@ def solved_arrays(
     point_distance: Array,
     frame_angle: Array,
 ) -> SolvedArrays:
-    """
-    Put solutions into REP-103 axes and beside them the quality of the transfer.
+    """Put solutions into REP-103 axes and beside them the quality of the transfer.
 
     Parameters
     ----------

@@ -8,10 +8,10 @@ import time
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from human_model.motion import SIDES, BodyMotion
 from human_model.report import SolveReport, SolveStatus
+from human_model.typing import BoolArray, IntArray
 from muscle_analyzer.core import verdict
 from muscle_analyzer.core.analyzer_options import MuscleAnalyzerOptions
 from muscle_analyzer.core.block_arrays import (
@@ -29,10 +29,6 @@ from muscle_analyzer.core.load_solver import LoadSolver
 from muscle_analyzer.core.muscle_analysis import MuscleAnalysis, Origin
 from muscle_analyzer.core.subject_model import SubjectModel
 from muscle_analyzer.core.transfer import TransferredMotion
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
 
 #: Bodies that the ground and the box push, and points that tell where hands and feet are; always
 #: [right, left].
@@ -66,8 +62,7 @@ MUSCLES = (
 
 
 class BlockSolver:
-    """
-    Solver of one stream of blocks.
+    """Solver of one stream of blocks.
 
     Parameters
     ----------
@@ -111,8 +106,7 @@ class BlockSolver:
         origin: Origin,
         build_time: float,
     ) -> MuscleAnalysis:
-        """
-        Analyse a transferred block.
+        """Analyse a transferred block.
 
         Parameters
         ----------

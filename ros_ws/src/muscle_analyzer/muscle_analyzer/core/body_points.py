@@ -29,11 +29,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from human_model.frames import to_opensim
+from human_model.typing import Array
 from muscle_analyzer.core.exceptions import ScalingError
 from muscle_analyzer.core.kinematics import BodyState, forward_kinematics
 from muscle_analyzer.core.multibody import MultibodyModel
-
-Array = NDArray[np.float64]
 
 _MIDDLES = {'shoulder_mid': ('shoulder_r', 'shoulder_l')}
 # Components of a difference in OpenSim's axes that a measure counts.
@@ -167,8 +166,10 @@ def scale_factors(
     for row in _table('scale_rules'):
         if row['body'] not in factors:
             raise ScalingError(f'scale rule for body {row["body"]!r}, which the model has not')
-        ways = [source[row['to']] - source[row['from']] if row['to'] else np.zeros(3)
-                for source in (subject, generic)]
+        ways = [
+            source[row['to']] - source[row['from']] if row['to'] else np.zeros(3)
+            for source in (subject, generic)
+        ]
         for axis in row['axes']:
             k = 'xyz'.index(axis)
             match row['measure']:

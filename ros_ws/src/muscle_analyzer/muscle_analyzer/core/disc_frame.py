@@ -36,12 +36,10 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from muscle_analyzer.core.exceptions import InputArrayError, OptionError
 from muscle_analyzer.core.kernel import kernel
-
-Array = NDArray[np.float64]
 
 #: OpenSim's body axes (forward, up, right) as columns forward, left, up.
 FORWARD_LEFT_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
@@ -121,8 +119,7 @@ def disc_option(name: str) -> DiscOption:
 
 
 class DiscSetting(NamedTuple):
-    """
-    An option with its numbers, for the compiled functions.
+    """An option with its numbers, for the compiled functions.
 
     Attributes
     ----------
@@ -213,9 +210,7 @@ def turn_disc(
     _lean_forward(rotation, np.radians(_sacral_angle(setting.regression, lean, knee)))
 
 
-def disc_rotation(
-    option: DiscOption, vertebra: Array, trunk: Array, knee_flexion: float
-) -> Array:
+def disc_rotation(option: DiscOption, vertebra: Array, trunk: Array, knee_flexion: float) -> Array:
     """Return the rotation (3, 3) ground <- disc, ground in OpenSim's axes.
 
     Parameters

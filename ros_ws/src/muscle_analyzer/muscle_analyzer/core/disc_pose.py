@@ -6,15 +6,13 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from human_model.typing import Array
 
 
 @njit(cache=True, error_model='numpy')
 def world_poses(poses: Array) -> tuple[Array, Array]:
-    """
-    Give the places (n, 3) [m] and orientations (n, 4) of a frame in the laboratory.
+    """Give the places (n, 3) [m] and orientations (n, 4) of a frame in the laboratory.
 
     Orientations are quaternions xyzw with w >= 0, world (REP-103) <- frame.  As in
     `human_model.frames.quaternion_from_matrix` the largest of the four squared components is the

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Semismooth Newton method on the dual of the static optimisation, compiled.
+"""Semismooth Newton method on the dual of the static optimisation, compiled.
 
 The problem (equation 4.10 of the thesis with exponent p and weights w, and reserve actuators)::
 
@@ -19,12 +18,9 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from human_model.typing import Array, IntArray
 from muscle_analyzer.core.false_position import crossing, narrowed, whole_step
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 #: A step is taken when the slope of the dual along it has fallen to this share of the first slope.
 SLOPE_SHARE = 0.1
@@ -33,8 +29,7 @@ LINE_TRIALS = 60
 
 
 class Columns(NamedTuple):
-    """
-    Matrix A (n_c, n_m), torque of each muscle at full activation, column by column.
+    """Matrix A (n_c, n_m), torque of each muscle at full activation, column by column.
 
     Attributes
     ----------
@@ -98,8 +93,7 @@ def columns_of(matrix: Array) -> Columns:
 
 @njit(cache=True, error_model='numpy')
 def cholesky_solve(matrix: Array, vector: Array) -> bool:
-    """
-    Solve in place; the solution replaces `vector`.  False if not positive definite.
+    """Solve in place; the solution replaces `vector`.  False if not positive definite.
 
     Of `matrix` only the lower triangle is used.  What is left of a row's first entry stays zero in
     the factor and is left out: most muscles cross few joints, so that is most of it.
@@ -160,9 +154,7 @@ def _evaluate(
         pull = 0.0
         for k in range(start[i], start[i + 1]):
             pull += value[k] * multiplier[row[k]]
-        activation[i], slope[i] = _minimiser(
-            pull, lower[i], upper[i], weight[i], exponent
-        )
+        activation[i], slope[i] = _minimiser(pull, lower[i], upper[i], weight[i], exponent)
         for k in range(start[i], start[i + 1]):
             gradient[row[k]] -= value[k] * activation[i]
     worst = 0.0
@@ -174,12 +166,7 @@ def _evaluate(
 
 
 @njit(cache=True, error_model='numpy')
-def _hessian(
-    columns: Columns,
-    reserve: Array,
-    slope: Array,
-    hessian: Array,
-) -> None:
+def _hessian(columns: Columns, reserve: Array, slope: Array, hessian: Array) -> None:
     """Fill the lower triangle of minus the dual's generalised Hessian."""
     start, row, value = columns
     for j in range(reserve.size):
@@ -216,8 +203,7 @@ def _step_size(
     first_slope: float,
     whole_slope: float,
 ) -> float:
-    """
-    Find where along a step that is too long the slope of the dual has all but gone.
+    """Find where along a step that is too long the slope of the dual has all but gone.
 
     The slope falls along the step, from `first_slope` (positive) to `whole_slope` (negative).  Its
     zero is sought by false position, halving the kept end's slope when one end stays twice (the
@@ -262,8 +248,7 @@ def solve_dual(
     tolerance: float,
     max_iterations: int,
 ) -> tuple[Array, Array, int, bool]:
-    """
-    Maximise the dual from a starting point.
+    """Maximise the dual from a starting point.
 
     Parameters
     ----------

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Closest points of an ellipsoid, and the mean direction from a chord to its surface, compiled.
+"""Closest points of an ellipsoid, and the mean direction from a chord to its surface, compiled.
 
 A point x is closest to a point p where x_i = a_i^2 p_i / (t + a_i^2) with the largest root t of
 S(t) = sum (x_i / a_i)^2 = 1 (Eberly, Distance from a point to an ellipse, an ellipsoid, or a
@@ -36,8 +35,7 @@ _REORDERED = {'reassoc', 'contract', 'arcp', 'nsz'}
 
 @njit(cache=True, error_model='numpy')
 def closest_on_ellipsoid(axes: Vector, point: Vector, held: int) -> Vector:
-    """
-    Find the point of an ellipsoid closest to a point.
+    """Find the point of an ellipsoid closest to a point.
 
     Parameters
     ----------
@@ -104,8 +102,7 @@ def closest_on_ellipsoid(axes: Vector, point: Vector, held: int) -> Vector:
 def _sum_of_normals(
     axes: Vector, enter: Vector, step: Vector, begin: float, middle: float, end: float
 ) -> tuple[float, float, float, float]:
-    """
-    Sum the normals at the points closest to the nodes on a chord, all at once.
+    """Sum the normals at the points closest to the nodes on a chord, all at once.
 
     The nodes lie in the parts of the chord from `begin` to `middle` and from there to `end`
     (shares of it).  Each point is found as in `closest_on_ellipsoid`, in so many steps that they
@@ -178,8 +175,7 @@ def _exact_sum_of_normals(
 
 @njit(cache=True, error_model='numpy')
 def mean_direction(axes: Vector, enter: Vector, leave: Vector) -> Vector:
-    """
-    Average the unit vectors from a chord to the closest surface, and make a unit vector of it.
+    """Average the unit vectors from a chord to the closest surface, and make a unit vector of it.
 
     Where the chord crosses the plane normal to the smallest half axis the closest point may jump.
     The parts before and after have the weight and the extent of OpenSim's samples on them; a

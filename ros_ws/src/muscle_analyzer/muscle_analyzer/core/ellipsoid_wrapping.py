@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Path of a muscle over an ellipsoid, compiled.
+"""Path of a muscle over an ellipsoid, compiled.
 
 As in OpenSim's ``WrapEllipsoid`` a segment wraps when it pierces the ellipsoid, and its path lies
 in a plane through its ends and one point of the surface, the *guide*.  OpenSim's 'hybrid' method
@@ -100,8 +99,7 @@ def _arc(
     second: tuple[float, float],
     turned: float,
 ) -> float:
-    """
-    Measure the image of an arc of the unit circle on the axes p and q.
+    """Measure the image of an arc of the unit circle on the axes p and q.
 
     `first` and `second` are cosine and sine of the angles of its ends; `turned` is the angle
     between them.  At an angle the speed is the root of a mean plus parts with twice the angle.
@@ -130,8 +128,7 @@ def _arc(
 def wrap_ellipsoid(
     first: Vector, second: Vector, axes: Vector, axis: int, sign: int, method: int
 ) -> tuple[int, float, Vector, Vector]:
-    """
-    Wrap one segment over an ellipsoid; arguments and results as `wrap_cylinder`.
+    """Wrap one segment over an ellipsoid; arguments and results as `wrap_cylinder`.
 
     `axes` are the half axes along x, y and z [m], `method` is `HYBRID` or `MIDPOINT`.
     """

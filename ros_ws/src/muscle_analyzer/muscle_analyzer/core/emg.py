@@ -15,11 +15,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from muscle_analyzer.core.exceptions import EmgError
-
-Array = NDArray[np.float64]
 
 #: Pass band and cut-off of the envelope [Hz] (dissertation, section 4.3).
 PASS_BAND, ENVELOPE_CUTOFF = (10.0, 450.0), 5.0

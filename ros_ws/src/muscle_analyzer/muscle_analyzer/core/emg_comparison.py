@@ -22,11 +22,10 @@ from importlib.resources import files
 import numpy as np
 from numpy.typing import NDArray
 
+from human_model.typing import Array
 from muscle_analyzer.core.emg import Envelopes
 from muscle_analyzer.core.exceptions import EmgError
 from muscle_analyzer.core.muscle_analysis import MuscleAnalysis
-
-Array = NDArray[np.float64]
 
 #: Shifts are tried in steps of 1 ms, a sampling interval of the EMG at its lowest rate.
 LAG_STEP = 1e-3
@@ -184,18 +183,14 @@ def parts_of(muscle: EmgMuscle, side: str, muscle_names: tuple[str, ...]) -> tup
 
 
 def compare_emg(
-    envelopes: Envelopes,
-    analysis: MuscleAnalysis,
-    channels: Mapping[str, str] | None = None,
+    envelopes: Envelopes, analysis: MuscleAnalysis, channels: Mapping[str, str] | None = None
 ) -> tuple[EmgMatch, ...]:
     """Compare every channel with an analysis of a lift; see `match_envelopes`."""
     return match_envelopes(envelopes, LiftActivations.of(analysis), channels)
 
 
 def match_envelopes(
-    envelopes: Envelopes,
-    lift: LiftActivations,
-    channels: Mapping[str, str] | None = None,
+    envelopes: Envelopes, lift: LiftActivations, channels: Mapping[str, str] | None = None
 ) -> tuple[EmgMatch, ...]:
     """Compare every channel with the activation of its muscle over a lift.
 

@@ -11,8 +11,7 @@ from muscle_analyzer.core.kernel import kernel
 
 
 class Bracket(NamedTuple):
-    """
-    Two places with the zero between them.
+    """Two places with the zero between them.
 
     Attributes
     ----------

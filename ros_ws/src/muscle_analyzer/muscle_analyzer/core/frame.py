@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-The whole analysis of frames of motion in one compiled function.
+"""The whole analysis of frames of motion in one compiled function.
 
 Kinematics, inverse dynamics, muscle paths, force-length-velocity, static optimisation (equation
 4.10), reactions of all joints (equation 4.11) and the loads in their anatomical frames, frame
@@ -15,8 +14,8 @@ from typing import TypeVar, cast
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from muscle_analyzer.core.disc_frame import turn_disc
 from muscle_analyzer.core.frame_data import FrameLoads, FrameModel, FrameRoom
 from muscle_analyzer.core.held import Held
@@ -35,7 +34,6 @@ from muscle_analyzer.core.torque_sharing import (
     share_torque,
 )
 
-Array = NDArray[np.float64]
 _Function = TypeVar('_Function', bound=Callable[..., object])
 
 #: Steps of `solve_frames`.
@@ -78,8 +76,7 @@ def _muscle_strength(model: FrameModel, room: FrameRoom, qd: Array) -> None:
 def demand(
     model: FrameModel, room: FrameRoom, q: Array, qd: Array, qdd: Array, external: Array
 ) -> int:
-    """
-    Compute what one frame asks of the muscles and what they can do.
+    """Compute what one frame asks of the muscles and what they can do.
 
     Parameters
     ----------
@@ -128,11 +125,8 @@ def demand(
 
 
 @kernel
-def add_reactions(
-    model: FrameModel, room: FrameRoom, q: Array, out: FrameLoads, k: int
-) -> None:
-    """
-    Put what the muscles do to the joints into the solution of frame number k.
+def add_reactions(model: FrameModel, room: FrameRoom, q: Array, out: FrameLoads, k: int) -> None:
+    """Put what the muscles do to the joints into the solution of frame number k.
 
     Parameters
     ----------
@@ -177,9 +171,7 @@ def add_reactions(
 
 
 @_inner
-def _optimize(
-    actuators: Actuators, room: FrameRoom, past: Array, out: FrameLoads, k: int
-) -> None:
+def _optimize(actuators: Actuators, room: FrameRoom, past: Array, out: FrameLoads, k: int) -> None:
     """Share the torques of frame number k among the muscles."""
     multiplier = first_guess(past)
     activation, residual, iterations, converged = share_torque(
@@ -209,8 +201,7 @@ def solve_frames(
     out: FrameLoads,
     matrix: Array,
 ) -> None:
-    """
-    Solve frame after frame, each from the solution of the one before.
+    """Solve frame after frame, each from the solution of the one before.
 
     Parameters
     ----------

@@ -7,8 +7,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array, BoolArray, IntArray
 from muscle_analyzer.core.disc_frame import DiscSetting
 from muscle_analyzer.core.dual_newton import Columns
 from muscle_analyzer.core.inverse_dynamics import InverseDynamics, room_for_dynamics
@@ -20,14 +20,9 @@ from muscle_analyzer.core.muscle_path_table import PathTable
 from muscle_analyzer.core.muscle_paths import CrossedPaths, PathRoom, room_for_paths
 from muscle_analyzer.core.torque_sharing import Actuators
 
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
-
 
 class FrameModel(NamedTuple):
-    """
-    Everything about a model that a frame needs.
+    """Everything about a model that a frame needs.
 
     Attributes
     ----------
@@ -66,8 +61,7 @@ class FrameModel(NamedTuple):
 
 
 class FrameRoom(NamedTuple):
-    """
-    Where a frame is worked out: made once, and written to anew by every frame.
+    """Where a frame is worked out: made once, and written to anew by every frame.
 
     Attributes
     ----------
@@ -139,8 +133,7 @@ def room_for_frame(model: FrameModel) -> FrameRoom:
 
 
 class FrameLoads(NamedTuple):
-    """
-    Solutions of n frames.
+    """Solutions of n frames.
 
     Attributes
     ----------

@@ -24,9 +24,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
+from human_model.typing import Array
 from muscle_analyzer.core.exceptions import OsimFormatError
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Tuples of many arrays, kept in the form that compiled functions have them in.
+"""Tuples of many arrays, kept in the form that compiled functions have them in.
 
 Numba turns every array that a compiled function is called with into a structure of its own, at
 every call: 0.2 us each, so that the hundred arrays of a model take longer than many a computation
@@ -24,8 +23,7 @@ class _HeldType(types.StructRef):
 
 
 class Held(structref.StructRefProxy, Generic[_Tuple]):
-    """
-    A tuple that compiled functions get at without turning it over; made by `hold`.
+    """A tuple that compiled functions get at without turning it over; made by `hold`.
 
     Attributes
     ----------

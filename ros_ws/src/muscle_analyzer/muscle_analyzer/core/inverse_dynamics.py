@@ -14,11 +14,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from human_model.typing import Array
 from muscle_analyzer.core.kernel import kernel
 from muscle_analyzer.core.kinematics import BodyState, cross3
 from muscle_analyzer.core.multibody import Tree
-
-Array = NDArray[np.float64]
 
 
 class InverseDynamics(NamedTuple):
@@ -155,9 +154,7 @@ def room_for_dynamics(tree: Tree) -> InverseDynamics:
 
 
 @kernel
-def balance_motion(
-    tree: Tree, state: BodyState, external: Array, out: InverseDynamics
-) -> None:
+def balance_motion(tree: Tree, state: BodyState, external: Array, out: InverseDynamics) -> None:
     """Fill joint wrenches and generalised forces as `inverse_dynamics` gives them."""
     joint_wrench, tree_force, force = out
     for i in range(6):

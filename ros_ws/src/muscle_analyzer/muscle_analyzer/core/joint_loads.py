@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Loads of all joints in anatomical frames: lumbar discs, hips, knees.
+"""Loads of all joints in anatomical frames: lumbar discs, hips, knees.
 
 One convention for all: the force of the *lower* segment on the *upper* one at the joint's centre,
 in a frame with x anterior, y left, z towards the head.  At L5-S1 that is the force of S1 on L5, at
@@ -25,8 +24,8 @@ from importlib.resources import files
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array, IntArray
 from muscle_analyzer.core.disc_frame import (
     FORWARD_LEFT_UP,
     DiscOption,
@@ -38,9 +37,6 @@ from muscle_analyzer.core.kernel import kernel
 from muscle_analyzer.core.kinematics import cross3
 from muscle_analyzer.core.multibody import MultibodyModel
 
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-
 #: The joint whose frame depends on the posture with `chaffin`.
 LUMBOSACRAL = 'l5_s1'
 #: The body above it, and what stands for that in models without vertebrae.
@@ -49,8 +45,7 @@ L5, TORSO = 'lumbar5', 'torso'
 
 @dataclass(frozen=True)
 class LoadedJoint:
-    """
-    A row of `data/loaded_joints.csv`.
+    """A row of `data/loaded_joints.csv`.
 
     Attributes
     ----------
@@ -78,8 +73,7 @@ class JointLoad(NamedTuple):
 
 
 def read_loaded_joints() -> tuple[LoadedJoint, ...]:
-    """
-    Read the table of joints.
+    """Read the table of joints.
 
     Raises
     ------
@@ -118,8 +112,7 @@ def loaded_joints(model: MultibodyModel) -> tuple[LoadedJoint, ...]:
 
 
 class JointFrames(NamedTuple):
-    """
-    The loaded joints of a model, for the compiled functions.
+    """The loaded joints of a model, for the compiled functions.
 
     Attributes
     ----------
@@ -149,8 +142,7 @@ def joint_loads(
     force: Array,
     moment: Array,
 ) -> None:
-    """
-    Put forces and moments of all joints into the last two (n_j, 3).
+    """Put forces and moments of all joints into the last two (n_j, 3).
 
     The others are those of `JointLoadFrames.loads`.
     """
@@ -175,8 +167,7 @@ def joint_loads(
 
 
 class JointLoadFrames:
-    """
-    Turns the reactions of a model's joints into their anatomical frames.
+    """Turns the reactions of a model's joints into their anatomical frames.
 
     Parameters
     ----------
@@ -204,8 +195,7 @@ class JointLoadFrames:
     def loads(
         self, reactions: Array, centres: Array, rotations: Array, lumbosacral: Array
     ) -> JointLoad:
-        """
-        Give the loads in one state.
+        """Give the loads in one state.
 
         Parameters
         ----------
@@ -230,7 +220,5 @@ def _frame(joint: LoadedJoint, option: DiscOption) -> Array:
         return FORWARD_LEFT_UP
     parameters = disc_parameters(DiscOption.BRUNO2015)
     own = '' if joint.name == LUMBOSACRAL else f'_{joint.name}'
-    frame: Array = leant_forward(
-        FORWARD_LEFT_UP, math.radians(parameters[f'forward_tilt{own}'])
-    )
+    frame: Array = leant_forward(FORWARD_LEFT_UP, math.radians(parameters[f'forward_tilt{own}']))
     return frame

@@ -17,14 +17,12 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from muscle_analyzer.core.inverse_dynamics import carry, wrench_at
 from muscle_analyzer.core.kernel import kernel
 from muscle_analyzer.core.kinematics import BodyState
 from muscle_analyzer.core.multibody import Tree
-
-Array = NDArray[np.float64]
 
 
 class NetMoment(NamedTuple):

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-How the innermost functions are compiled.
+"""How the innermost functions are compiled.
 
 Numba counts references of every array that a function takes, in functions that could set one
 free.  Each count is an atomic operation, and in loops over muscles they cost more than the
@@ -19,8 +18,7 @@ _Function = TypeVar('_Function', bound=Callable[..., object])
 
 
 def kernel(function: _Function) -> _Function:
-    """
-    Compile a function that writes into the arrays it is given.
+    """Compile a function that writes into the arrays it is given.
 
     One that allocates does not compile.  Division by zero gives infinity or NaN, as in NumPy.
     """

@@ -19,13 +19,11 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from muscle_analyzer.core.functions import evaluated
 from muscle_analyzer.core.kernel import kernel
 from muscle_analyzer.core.multibody import Tree
-
-Array = NDArray[np.float64]
 
 
 class CoordinateState(NamedTuple):
@@ -126,9 +124,7 @@ def coordinate_state(tree: Tree, q: Array, qd: Array, qdd: Array) -> CoordinateS
 
 
 @kernel
-def _move_coordinates(
-    tree: Tree, q: Array, qd: Array, qdd: Array, out: CoordinateState
-) -> None:
+def _move_coordinates(tree: Tree, q: Array, qd: Array, qdd: Array, out: CoordinateState) -> None:
     """Fill a `coordinate_state`, zeros before."""
     value, rate, acceleration, gain = out
     # Plain arrays: to hand a tuple of them to a function costs more than the function.
@@ -165,9 +161,7 @@ def _turn_about(rotation: Array, x: float, y: float, z: float, angle: float) -> 
 
 
 @kernel
-def _moves(
-    tree: Tree, x: CoordinateState, move: Array, tree_gain: Array, gain: Array
-) -> None:
+def _moves(tree: Tree, x: CoordinateState, move: Array, tree_gain: Array, gain: Array) -> None:
     """Fill angle or distance of each motion with its time derivatives, and gains; zeros before."""
     first, lower, anchor, coefficient = tree.functions
     coordinate, number = tree.motion_coordinate, tree.motion_function

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Muscle forces and L5-S1 reaction of the musculoskeletal model in one state of motion.
+"""Muscle forces and L5-S1 reaction of the musculoskeletal model in one state of motion.
 
 Inverse dynamics gives the torques, static optimisation (equation 4.10) shares them among the
 muscles, and what the muscles do to the bodies gives the joint reaction (equation 4.11).
@@ -14,9 +13,9 @@ import time
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from human_model.report import SolveReport
+from human_model.typing import Array
 from muscle_analyzer.core.analyzer_options import MuscleAnalyzerOptions
 from muscle_analyzer.core.disc_frame import DiscLoad, disc_option, disc_setting
 from muscle_analyzer.core.exceptions import InputArrayError
@@ -38,8 +37,6 @@ from muscle_analyzer.core.static_optimization import (
 )
 from muscle_analyzer.core.torque_sharing import Account
 
-Array = NDArray[np.float64]
-
 #: Bodies and coordinates of the lifting full-body model that the analysis asks for.
 ROOT, THORAX = 'pelvis', 'torso'
 KNEES = ('knee_angle_r', 'knee_angle_l')
@@ -51,8 +48,7 @@ _NOTHING = np.empty((0, 0, 0))
 
 @dataclass(frozen=True, eq=False)
 class LoadSolution:
-    """
-    Loads in one state, OpenSim's axes.
+    """Loads in one state, OpenSim's axes.
 
     Attributes
     ----------
@@ -85,8 +81,7 @@ class LoadSolution:
 
 
 class LoadSolver:
-    """
-    Solver for one model; the optimisation starts from the state solved before.
+    """Solver for one model; the optimisation starts from the state solved before.
 
     Parameters
     ----------
@@ -147,8 +142,7 @@ class LoadSolver:
         self.optimization.reset()
 
     def solve(self, q: Array, qd: Array, qdd: Array, external: Array) -> LoadSolution:
-        """
-        Solve one state.
+        """Solve one state.
 
         Parameters
         ----------
@@ -167,8 +161,7 @@ class LoadSolver:
         return self.solution(loads, 0, time.perf_counter() - began)
 
     def solve_block(self, q: Array, qd: Array, qdd: Array, external: Array) -> FrameLoads:
-        """
-        Solve states that follow each other.
+        """Solve states that follow each other.
 
         Parameters
         ----------
@@ -196,8 +189,7 @@ class LoadSolver:
         return out
 
     def solution(self, loads: FrameLoads, k: int, solve_time: float) -> LoadSolution:
-        """
-        Give the loads in one state of a block.
+        """Give the loads in one state of a block.
 
         Parameters
         ----------
@@ -228,8 +220,7 @@ class LoadSolver:
     def report(
         self, loads: FrameLoads, k: int, build_time: float, solve_time: float
     ) -> SolveReport:
-        """
-        Give the report of one state of a block.
+        """Give the report of one state of a block.
 
         Parameters
         ----------

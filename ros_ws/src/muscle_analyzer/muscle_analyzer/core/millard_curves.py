@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Curves of the muscle of Millard, Uchida, Seth and Delp 2013 (J Biomech Eng 135:021005).
+"""Curves of the muscle of Millard, Uchida, Seth and Delp 2013 (J Biomech Eng 135:021005).
 
 Each curve is a row of quintic Bezier sections that bend round the corner between two tangents, as
 OpenSim 4's ``Millard2012EquilibriumMuscle`` has them, with straight lines before and behind.  A
@@ -19,13 +18,10 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from human_model.typing import Array, IntArray
 from muscle_analyzer.core.exceptions import OsimFormatError
 from muscle_analyzer.core.osim_model import Muscle
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 KIND = 'Millard2012EquilibriumMuscle'
 #: Points of the grid, and halvings that find a curve's parameter for each of them.
@@ -58,8 +54,7 @@ _SHAPE = ('stiffness_at_low_force', 'stiffness_at_one_norm_force', 'curviness')
 
 @dataclass(frozen=True, eq=False)
 class SampledCurve:
-    """
-    A curve on an even grid, straight outside.
+    """A curve on an even grid, straight outside.
 
     Attributes
     ----------
@@ -76,8 +71,7 @@ class SampledCurve:
 
 
 class CurveTable(NamedTuple):
-    """
-    Different curves, for the compiled functions.
+    """Different curves, for the compiled functions.
 
     Attributes
     ----------
@@ -107,8 +101,7 @@ def curve_table(curves: Sequence[SampledCurve]) -> CurveTable:
 def curve_value(
     lower: Array, step: Array, value: Array, slope: Array, curve: int, x: float
 ) -> float:
-    """
-    Give the value of a curve at x.
+    """Give the value of a curve at x.
 
     Parameters
     ----------
@@ -134,8 +127,7 @@ def curve_value(
 def corner(
     x0: float, y0: float, slope0: float, x1: float, y1: float, slope1: float, curviness: float
 ) -> Array:
-    """
-    Give the control points (2, 6) of a section between two points with given slopes.
+    """Give the control points (2, 6) of a section between two points with given slopes.
 
     The inner ones lie on the tangents, the nearer to where these cross the greater the curviness
     (0 to 1, of which OpenSim takes 0.1 to 0.9).
@@ -154,14 +146,11 @@ def corner(
 def _bernstein(u: Array, degree: int) -> Array:
     binomial = _BINOMIAL if degree == 5 else np.array([1.0, 4.0, 6.0, 4.0, 1.0])
     powers = np.arange(degree + 1)
-    return np.asarray(
-        binomial * u[:, None] ** powers * (1.0 - u[:, None]) ** (degree - powers)
-    )
+    return np.asarray(binomial * u[:, None] ** powers * (1.0 - u[:, None]) ** (degree - powers))
 
 
 def sampled(sections: Sequence[Array]) -> SampledCurve:
-    """
-    Sample a row of sections.
+    """Sample a row of sections.
 
     Raises
     ------
@@ -234,16 +223,12 @@ def passive_curve(properties: Mapping[str, float]) -> SampledCurve:
     x = zero + min(0.1 / stiffness, 0.1 * (one - zero))
     y = low * 0.5 * (x - zero)
     return sampled(
-        [
-            corner(zero, 0.0, 0.0, x, y, low, bend),
-            corner(x, y, low, one, 1.0, stiffness, bend),
-        ]
+        [corner(zero, 0.0, 0.0, x, y, low, bend), corner(x, y, low, one, 1.0, stiffness, bend)]
     )
 
 
 class MillardCurves(NamedTuple):
-    """
-    Curves of a model's Millard muscles.
+    """Curves of a model's Millard muscles.
 
     Attributes
     ----------
@@ -259,8 +244,7 @@ class MillardCurves(NamedTuple):
 
 
 def millard_curves(muscles: Sequence[Muscle]) -> MillardCurves:
-    """
-    Build the curves of a model's muscles, each that several muscles have once.
+    """Build the curves of a model's muscles, each that several muscles have once.
 
     Raises
     ------

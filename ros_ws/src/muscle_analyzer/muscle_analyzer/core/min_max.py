@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-The min/max criterion of muscle recruitment by a semismooth Newton method on its dual, compiled.
+"""The min/max criterion of muscle recruitment by a semismooth Newton method on its dual, compiled.
 
 The largest activation is made as small as the torques allow (Rasmussen, Damsgaard and Voigt 2001,
 J Biomech 34:409).  That alone leaves the muscles below the largest activation undetermined, so a
@@ -28,16 +27,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from muscle_analyzer.core.dual_newton import (
-    LINE_TRIALS,
-    SLOPE_SHARE,
-    Columns,
-    cholesky_solve,
-    dot,
-)
+from human_model.typing import Array
+from muscle_analyzer.core.dual_newton import LINE_TRIALS, SLOPE_SHARE, Columns, cholesky_solve, dot
 from muscle_analyzer.core.false_position import crossing, narrowed, whole_step
 
-Array = NDArray[np.float64]
 Places = NDArray[np.int8]
 
 #: e of the header: the largest activation exceeds the smallest possible one by at most e times
@@ -54,8 +47,7 @@ LOW, FREE, HIGH = -1, 0, 1
 
 
 class _Problem(NamedTuple):
-    """
-    The problem with one share of the squares.
+    """The problem with one share of the squares.
 
     Attributes
     ----------
@@ -79,8 +71,7 @@ class _Problem(NamedTuple):
 
 
 class _Iterate(NamedTuple):
-    """
-    Minimisers for given multipliers.
+    """Minimisers for given multipliers.
 
     Attributes
     ----------
@@ -103,8 +94,7 @@ class _Iterate(NamedTuple):
 
 @njit(cache=True, error_model='numpy')
 def _largest(problem: _Problem, pull: Array, guess: float) -> float:
-    """
-    Give the b that muscles of these pulls press on with 1, or the bound of b next to it.
+    """Give the b that muscles of these pulls press on with 1, or the bound of b next to it.
 
     What they press with falls with b, piecewise linear and convex: from a guess one Newton step
     leads to the left of the solution, and from there the steps rise to it.
@@ -156,8 +146,7 @@ def _unbalanced(problem: _Problem, point: _Iterate) -> float:
 
 @njit(cache=True, error_model='numpy')
 def _evaluate(problem: _Problem, point: _Iterate, guess: float) -> tuple[float, float, int]:
-    """
-    Fill the minimisers for the multipliers of an iterate.
+    """Fill the minimisers for the multipliers of an iterate.
 
     Gives b, the largest entry of the gradient, and how many places have changed.
     """
@@ -182,8 +171,7 @@ def _evaluate(problem: _Problem, point: _Iterate, guess: float) -> tuple[float, 
 
 @njit(cache=True, error_model='numpy')
 def _step(problem: _Problem, place: Places, step: Array) -> tuple[bool, float]:
-    """
-    Solve for the Newton step in place of the gradient; give success, and how b goes with it.
+    """Solve for the Newton step in place of the gradient; give success, and how b goes with it.
 
     Minus the dual's Hessian is that of reserves and free muscles, and of b if it is free.
     """
@@ -217,8 +205,7 @@ def _step(problem: _Problem, place: Places, step: Array) -> tuple[bool, float]:
 def _step_size(
     problem: _Problem, multiplier: Array, step: Array, guess: float, first: float, whole: float
 ) -> float:
-    """
-    Find where along a step that is too long the slope of the dual has all but gone.
+    """Find where along a step that is too long the slope of the dual has all but gone.
 
     As in `dual_newton` by false position with the Illinois rule, between the slopes `first`
     (positive) at the beginning and `whole` (negative) at the end.
@@ -254,8 +241,7 @@ def _step_size(
 def _maximise(
     problem: _Problem, point: _Iterate, tolerance: float, max_iterations: int
 ) -> tuple[float, int, bool]:
-    """
-    Maximise the dual from the multipliers of an iterate; give b, the steps, and success.
+    """Maximise the dual from the multipliers of an iterate; give b, the steps, and success.
 
     A whole step after which every activation is where it was has found the solution, but for
     rounding.  A step cut short ends where some muscle meets or leaves a bound: if the next one
@@ -297,8 +283,7 @@ def _maximise(
 
 @njit(cache=True, error_model='numpy')
 def _refine(problem: _Problem, point: _Iterate, b: float) -> tuple[float, float]:
-    """
-    Take off what rounding left of the balance; give b and what is left.
+    """Take off what rounding left of the balance; give b and what is left.
 
     Changes are added to the activations: to divide the whole pull by the small curvature again
     would lose them anew.
@@ -342,8 +327,7 @@ def solve_min_max(
     tolerance: float,
     max_iterations: int,
 ) -> tuple[Array, Array, int, bool, float]:
-    """
-    Make the largest activation smallest.
+    """Make the largest activation smallest.
 
     Parameters are those of `dual_newton.solve_dual`, without the exponent; the limit of Newton
     steps is that for each share of the squares.
@@ -364,9 +348,7 @@ def solve_min_max(
         multiplier, np.empty(n_m), np.empty(n_m), np.zeros(n_m + 1, np.int8), np.empty(n_c)
     )
     iterations, b, found = 0, floor, False
-    problem = _Problem(
-        columns, reserve, torque, lower, floor, top, 2.0 * SQUARES_SHARE * weight
-    )
+    problem = _Problem(columns, reserve, torque, lower, floor, top, 2.0 * SQUARES_SHARE * weight)
     if multiplier.any():
         limit = min(WARM_STEPS, max_iterations)
         b, iterations, found = _maximise(problem, point, tolerance, limit)

@@ -13,14 +13,12 @@ from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from muscle_analyzer.core import osim_model
 from muscle_analyzer.core.exceptions import ModelCacheError
 from muscle_analyzer.core.functions import PiecewisePolynomial
 from muscle_analyzer.core.osim_model import OsimModel
-
-Array = NDArray[np.float64]
 
 _CLASSES = {
     kind.__name__: kind

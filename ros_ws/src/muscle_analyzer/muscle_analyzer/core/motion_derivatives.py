@@ -12,13 +12,11 @@ differentiation).
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 from scipy.signal import butter, lfilter, lfilter_zi
 
+from human_model.typing import Array
 from muscle_analyzer.core.exceptions import InputArrayError
-
-Array = NDArray[np.float64]
 
 FILTER_ORDER = 3
 SPLINE_DEGREE = 5

@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from human_model.typing import Array, IntArray
 from muscle_analyzer.core.exceptions import ModelCompilationError, UnknownNameError
 from muscle_analyzer.core.functions import (
     FunctionTable,
@@ -25,9 +26,6 @@ from muscle_analyzer.core.functions import (
     linear,
 )
 from muscle_analyzer.core.osim_model import GROUND, Joint, OsimModel
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 class Tree(NamedTuple):

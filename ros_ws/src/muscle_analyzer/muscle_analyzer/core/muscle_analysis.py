@@ -12,10 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from human_model.report import SolveReport, SolveStatus
+from human_model.typing import Array
 from muscle_analyzer.core.exceptions import InputArrayError
 from muscle_analyzer.core.verdict import worst
-
-Array = NDArray[np.float64]
 
 
 class Origin(NamedTuple):
@@ -29,8 +28,7 @@ class Origin(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class MuscleAnalysis:
-    """
-    Muscle forces and L5-S1 loads of n samples.
+    """Muscle forces and L5-S1 loads of n samples.
 
     A sample whose status is not `OK` is not good data.  What could not be computed is NaN; what
     muscles that are too weak leave to the reserves is kept and marked.  The L5-S1 load has
@@ -186,8 +184,7 @@ class MuscleAnalysis:
 
 
 class JoinedParts:
-    """
-    Joins the analyses of consecutive parts of a lift as they come: nothing is left for its end.
+    """Joins the analyses of consecutive parts of a lift as they come: nothing is left for its end.
 
     Parameters
     ----------
@@ -222,8 +219,7 @@ class JoinedParts:
             reports.extend(getattr(part, name))
 
     def whole(self) -> MuscleAnalysis:
-        """
-        Give the analysis of the whole lift.
+        """Give the analysis of the whole lift.
 
         Raises
         ------

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Force-length-velocity properties of a muscle with a rigid tendon, compiled.
+"""Force-length-velocity properties of a muscle with a rigid tendon, compiled.
 
 Curves of De Groote et al. 2016 (Ann Biomed Eng 44:2922) with the coefficients of OpenSim 4's
 ``DeGrooteFregly2016Muscle``, which lets the active curve pass through (1, 1) and the velocity
@@ -16,8 +15,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from muscle_analyzer.core.kernel import kernel
 from muscle_analyzer.core.millard_curves import MillardCurves, curve_value, millard_curves
 from muscle_analyzer.core.osim_model import Muscle
@@ -27,8 +26,6 @@ from muscle_analyzer.core.thelen_curves import (
     thelen_rate,
     thelen_shapes,
 )
-
-Array = NDArray[np.float64]
 
 #: Coefficients b1 to b4 of the three Gaussians of the active curve.
 ACTIVE = np.array(
@@ -50,8 +47,7 @@ MAX_VELOCITY = 10.0
 
 @njit(cache=True, error_model='numpy')
 def active_force_length(length: float, width_scale: float = WIDTH_SCALE) -> float:
-    """
-    Give the active force-length multiplier.
+    """Give the active force-length multiplier.
 
     Parameters
     ----------
@@ -70,8 +66,7 @@ def active_force_length(length: float, width_scale: float = WIDTH_SCALE) -> floa
 
 @njit(cache=True, error_model='numpy')
 def passive_force_length(length: float, strain: float = PASSIVE_STRAIN) -> float:
-    """
-    Give the passive force multiplier.
+    """Give the passive force multiplier.
 
     Parameters
     ----------
@@ -87,8 +82,7 @@ def passive_force_length(length: float, strain: float = PASSIVE_STRAIN) -> float
 
 @njit(cache=True, error_model='numpy')
 def force_velocity(velocity: float) -> float:
-    """
-    Give the force-velocity multiplier.
+    """Give the force-velocity multiplier.
 
     Parameters
     ----------
@@ -103,8 +97,7 @@ def force_velocity(velocity: float) -> float:
 
 
 class MuscleParameters(NamedTuple):
-    """
-    Parameters of all muscles, each (n_m,) if nothing else is said.
+    """Parameters of all muscles, each (n_m,) if nothing else is said.
 
     Attributes
     ----------
@@ -160,8 +153,7 @@ class MuscleParameters(NamedTuple):
 def fibre(
     slack: float, thickness: float, path_length: float, path_velocity: float
 ) -> tuple[float, float, float]:
-    """
-    Give a muscle's fibre: length [m], velocity [m/s], cosine of its pennation angle.
+    """Give a muscle's fibre: length [m], velocity [m/s], cosine of its pennation angle.
 
     Parameters
     ----------
@@ -180,8 +172,7 @@ def fibre(
 def strength(
     muscles: MuscleParameters, path_length: Array, path_velocity: Array, passive: bool
 ) -> tuple[Array, Array]:
-    """
-    Give what muscles can do along their paths at one instant.
+    """Give what muscles can do along their paths at one instant.
 
     Parameters
     ----------

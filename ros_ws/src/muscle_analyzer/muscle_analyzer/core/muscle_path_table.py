@@ -8,24 +8,20 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array, IntArray
 from muscle_analyzer.core.exceptions import OsimFormatError
 from muscle_analyzer.core.functions import FunctionTable, function_table
 from muscle_analyzer.core.multibody import MultibodyModel
 from muscle_analyzer.core.osim_model import PathPoint
 from muscle_analyzer.core.wrap_table import WrapTable, starts, wrap_table
 
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-
 #: A conditional point is there up to so far outside its range (constant of OpenSim), rad or m.
 CONDITION_MARGIN = 1e-5
 
 
 class SpanTable(NamedTuple):
-    """
-    Straight spans of the muscles whose path need not be found.
+    """Straight spans of the muscles whose path need not be found.
 
     Attributes
     ----------
@@ -45,8 +41,7 @@ class SpanTable(NamedTuple):
 
 
 class ProductTable(NamedTuple):
-    """
-    What makes moment arms: wrenches on bodies times columns of the bodies' Jacobians.
+    """What makes moment arms: wrenches on bodies times columns of the bodies' Jacobians.
 
     Attributes
     ----------
@@ -71,8 +66,7 @@ class ProductTable(NamedTuple):
 
 
 class PathTable(NamedTuple):
-    """
-    Paths of all muscles of one model.
+    """Paths of all muscles of one model.
 
     Attributes
     ----------
@@ -127,8 +121,7 @@ class PathTable(NamedTuple):
 
 
 def path_table(multibody: MultibodyModel, geodesic: bool = False) -> PathTable:
-    """
-    Build the table of a compiled model's muscles.
+    """Build the table of a compiled model's muscles.
 
     Parameters
     ----------

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Lengths, moment arms and forces on the bodies of all muscles at one posture, compiled.
+"""Lengths, moment arms and forces on the bodies of all muscles at one posture, compiled.
 
 A muscle pulls with unit force along its path; path points and points where it leaves a wrap
 object push on their bodies.  The moment arm about a coordinate is the generalised force of these
@@ -17,8 +16,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from human_model.typing import Array, IntArray
 from muscle_analyzer.core.functions import evaluate
 from muscle_analyzer.core.kernel import kernel
 from muscle_analyzer.core.kinematics import BodyState
@@ -26,13 +25,9 @@ from muscle_analyzer.core.muscle_path_table import PathTable, ProductTable, Span
 from muscle_analyzer.core.path_routing import Route, add_span, find_routes, room_for_route
 from muscle_analyzer.core.path_wrapping import place_surfaces
 
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-
 
 class MusclePaths(NamedTuple):
-    """
-    Paths of all muscles at one posture.
+    """Paths of all muscles at one posture.
 
     Attributes
     ----------
@@ -53,8 +48,7 @@ class MusclePaths(NamedTuple):
 
 
 class CrossedPaths(NamedTuple):
-    """
-    The same with the moment arms of those coordinates alone that can change a muscle's length.
+    """The same with the moment arms of those coordinates alone that can change a muscle's length.
 
     Attributes
     ----------
@@ -70,8 +64,7 @@ class CrossedPaths(NamedTuple):
 
 
 class PathRoom(NamedTuple):
-    """
-    What `trace_paths` writes to on its way.
+    """What `trace_paths` writes to on its way.
 
     Attributes
     ----------
@@ -224,8 +217,7 @@ def _with_all_arms(table: PathTable, found: CrossedPaths, n_q: int) -> MusclePat
 def muscle_paths(
     table: PathTable, body_position: Array, body_rotation: Array, jacobian: Array
 ) -> MusclePaths:
-    """
-    Compute all paths of a model whose path points are all fixed.
+    """Compute all paths of a model whose path points are all fixed.
 
     Parameters
     ----------
@@ -253,8 +245,7 @@ def muscle_paths(
 
 @njit(cache=True, error_model='numpy')
 def posture_paths(table: PathTable, state: BodyState, jacobian: Array) -> MusclePaths:
-    """
-    Compute all paths.
+    """Compute all paths.
 
     Parameters
     ----------
@@ -292,8 +283,7 @@ def trace_paths(table: PathTable, state: BodyState, room: PathRoom, out: Crossed
 
 @njit(cache=True, error_model='numpy')
 def body_wrenches(table: PathTable, wrench: Array, force: Array, n_bodies: int) -> Array:
-    """
-    Sum what muscles of given forces exert on the bodies.
+    """Sum what muscles of given forces exert on the bodies.
 
     Parameters
     ----------

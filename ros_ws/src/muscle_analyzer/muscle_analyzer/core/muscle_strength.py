@@ -23,15 +23,13 @@ from enum import StrEnum
 from importlib.resources import files
 
 import numpy as np
-from numpy.typing import NDArray
 
 from human_model.errors import StrengthError
 from human_model.strength import JointStrength, StrengthBound, surface
 from human_model.subject import Subject
+from human_model.typing import Array
 from muscle_analyzer.core.exceptions import OptionError, ScalingError
 from muscle_analyzer.core.osim_model import OsimModel
-
-Array = NDArray[np.float64]
 
 #: Angles over which the largest strength is looked for [rad]: beyond any joint's range.
 _ANGLES = np.linspace(-np.pi, np.pi, 721)
@@ -54,8 +52,7 @@ class StrengthScaling(StrEnum):
 
 @dataclass(frozen=True)
 class StrengthOptions:
-    """
-    How strong the muscles are.
+    """How strong the muscles are.
 
     Attributes
     ----------
@@ -74,8 +71,7 @@ class StrengthOptions:
 
 
 def force_factors(model: OsimModel, subject: Subject, options: StrengthOptions) -> Array:
-    """
-    Give what the maximum isometric force of each muscle (n_m,) is multiplied with.
+    """Give what the maximum isometric force of each muscle (n_m,) is multiplied with.
 
     Parameters
     ----------

@@ -10,12 +10,9 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from human_model.typing import Array, IntArray
 from muscle_analyzer.core.kernel import kernel
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 @njit(cache=True, error_model='numpy')

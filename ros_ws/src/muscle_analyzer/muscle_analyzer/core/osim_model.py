@@ -12,13 +12,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TypeVar
 
-import numpy as np
-from numpy.typing import NDArray
-
+from human_model.typing import Array
 from muscle_analyzer.core.exceptions import UnknownNameError
 from muscle_analyzer.core.functions import PiecewisePolynomial
-
-Array = NDArray[np.float64]
 
 GROUND = 'ground'
 
@@ -258,9 +254,7 @@ class OsimModel:
 Named = TypeVar('Named', Body, Joint, WrapObject)
 
 
-def _by_name(
-    items: tuple[Named, ...], name: str, what: str, source: str
-) -> Named:
+def _by_name(items: tuple[Named, ...], name: str, what: str, source: str) -> Named:
     for item in items:
         if item.name == name:
             return item

@@ -187,9 +187,7 @@ def _read_wrap_object(xml: OsimXml, owner: Frame, element: Element) -> WrapObjec
         name=xml.name(element),
         kind=kind,
         frame=Frame(
-            owner.body,
-            owner.rotation @ rotation,
-            owner.translation + owner.rotation @ translation,
+            owner.body, owner.rotation @ rotation, owner.translation + owner.rotation @ translation
         ),
         active=xml.flag(element, 'active', True),
         quadrant=quadrant.lower().removeprefix('+'),

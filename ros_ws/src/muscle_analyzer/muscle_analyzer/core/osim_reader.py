@@ -153,5 +153,3 @@ def _check_names(model: OsimModel) -> None:
                 raise OsimFormatError(
                     f'{model.source}: coupler {coupler.name!r}: no coordinate {name!r}'
                 )
-
-

@@ -10,14 +10,13 @@ from pathlib import Path
 from xml.etree.ElementTree import Element, ParseError, fromstring
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from human_model.typing import Array
 from muscle_analyzer.core import functions
 from muscle_analyzer.core.exceptions import OsimFormatError, UnsupportedElementError
 from muscle_analyzer.core.functions import PiecewisePolynomial
 from muscle_analyzer.core.osim_upgrade import upgrade_model
-
-Array = NDArray[np.float64]
 
 #: Versions that files of OpenSim 4 (from this one on) and of OpenSim 3.0 to 3.3 carry.
 OLDEST_VERSION, OPENSIM_3 = 40000, 30000

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Paths that have to be found at each posture: those that wrap and those whose points come and go.
+"""Paths that have to be found at each posture: those that wrap and those whose points come and go.
 
 See `muscle_paths` for what is done with them, and `path_wrapping` for the surfaces.
 """
@@ -13,21 +12,17 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from human_model.typing import Array, IntArray
 from muscle_analyzer.core.functions import evaluate
 from muscle_analyzer.core.kernel import kernel
 from muscle_analyzer.core.muscle_path_table import PathTable
 from muscle_analyzer.core.path_wrapping import gap, path_length, wrap_path
 from muscle_analyzer.core.wrapping import Vector
 
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-
 
 class Route(NamedTuple):
-    """
-    Room for one path at a time.
+    """Room for one path at a time.
 
     Attributes
     ----------
@@ -167,8 +162,24 @@ def find_routes(
         n_wraps = start[m + 1] - start[m]
         if n_wraps > 0:
             n, length[m] = wrap_path(
-                kind, size, axis, sign, surface, method, first_of, last_of, start[m], n_wraps,
-                geodesic or n_wraps > 1, frame, order, contacts, point, owner, arc, n,
+                kind,
+                size,
+                axis,
+                sign,
+                surface,
+                method,
+                first_of,
+                last_of,
+                start[m],
+                n_wraps,
+                geodesic or n_wraps > 1,
+                frame,
+                order,
+                contacts,
+                point,
+                owner,
+                arc,
+                n,
             )
         else:
             length[m] = path_length(point, owner, arc, n)
@@ -187,6 +198,13 @@ def find_routes(
                 if owner[k] >= 0 and motion[first + owner[k]] >= 0:
                     number, pull = motion[first + owner[k]], _pull(point, n, k)
                     _add_motion(
-                        table, number, rotation, bodies[k], pull, coordinate, coordinate_gain,
-                        arm, m,
+                        table,
+                        number,
+                        rotation,
+                        bodies[k],
+                        pull,
+                        coordinate,
+                        coordinate_gain,
+                        arm,
+                        m,
                     )

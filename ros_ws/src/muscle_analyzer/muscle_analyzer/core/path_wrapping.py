@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Where a path of points leaves and meets the surfaces that it wraps over, compiled.
+"""Where a path of points leaves and meets the surfaces that it wraps over, compiled.
 
 Which segment of the path wraps over an object, in which order objects are tried and how often, is
 as in OpenSim's ``GeometryPath``; the single surfaces are in modules of their own.
@@ -14,19 +13,15 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from human_model.typing import Array, IntArray
 from muscle_analyzer.core.ellipsoid_wrapping import wrap_ellipsoid
 from muscle_analyzer.core.kernel import kernel
 from muscle_analyzer.core.sphere_wrapping import wrap_sphere
 from muscle_analyzer.core.torus_wrapping import wrap_torus
 from muscle_analyzer.core.wrap_table import CYLINDER, ELLIPSOID, SPHERE, WrapTable
 from muscle_analyzer.core.wrapping import INSIDE, MISSED, PIERCED, POSSIBLE, Vector, wrap_cylinder
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 #: Rounds over the wrap objects of one path until its length settles, as in OpenSim, but to a
 #: tighter tolerance [m] so that the result does not depend on it.
@@ -35,8 +30,7 @@ WRAP_ROUNDS, WRAP_TOLERANCE = 8, 1e-9
 
 @kernel
 def place_surfaces(wraps: WrapTable, position: Array, rotation: Array, frame: Array) -> None:
-    """
-    Fill origin and axes (n_o, 12), ground from surface, of all wrap objects.
+    """Fill origin and axes (n_o, 12), ground from surface, of all wrap objects.
 
     `position` (n_b, 3) and `rotation` (n_b, 3, 3) are those of the bodies.
     """
@@ -156,8 +150,7 @@ def wrap_path(
     arc: Array,
     n: int,
 ) -> tuple[int, float]:
-    """
-    Insert the wrap points of one muscle into its path.
+    """Insert the wrap points of one muscle into its path.
 
     The first eight arguments are of `WrapTable`; `begin` and `n_wraps` are the muscle's uses,
     `frame` is of `place_surfaces`.  `owner` holds the number of a path point from 0, or

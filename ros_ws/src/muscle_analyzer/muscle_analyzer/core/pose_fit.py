@@ -18,6 +18,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from human_model.typing import Array
 from muscle_analyzer.core.kernel import kernel
 from muscle_analyzer.core.kinematics import (
     BodyState,
@@ -41,9 +42,6 @@ from muscle_analyzer.core.pose_misfit import (
     set_misfit,
     set_misfit_jacobian,
 )
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 # Damping relative to the mean diagonal of the normal matrix: first value, and the factors after an
 # accepted and a rejected step. They steer the way to the solution, not the solution.

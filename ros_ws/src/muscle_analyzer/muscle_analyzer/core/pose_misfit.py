@@ -8,14 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from human_model.typing import Array, IntArray
 from muscle_analyzer.core.kernel import kernel
 from muscle_analyzer.core.kinematics import BodyState, cross3, set_jacobians
 from muscle_analyzer.core.multibody import Tree
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 class Targets(NamedTuple):

@@ -10,12 +10,10 @@ from enum import StrEnum
 from importlib.resources import files
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from muscle_analyzer.core.exceptions import OptionError
 from muscle_analyzer.core.muscle_curves import MuscleParameters
-
-Array = NDArray[np.float64]
 
 
 class MuscleWeighting(StrEnum):
@@ -29,8 +27,7 @@ class MuscleWeighting(StrEnum):
 
 
 def muscle_weights(muscles: MuscleParameters, weighting: str) -> Array:
-    """
-    Give the weights (n_m,) of the muscles; their mean is 1.
+    """Give the weights (n_m,) of the muscles; their mean is 1.
 
     Parameters
     ----------
@@ -59,8 +56,7 @@ def muscle_weights(muscles: MuscleParameters, weighting: str) -> Array:
 
 
 def least_activations(muscle_names: tuple[str, ...], abdominal: float) -> Array:
-    """
-    Give the least activations (n_m,) of the muscles.
+    """Give the least activations (n_m,) of the muscles.
 
     Static optimisation never lets an antagonist work more than it must.  People brace: a least
     activation of the abdominal muscles (`data/abdominal_muscles.csv`), for example one measured by
@@ -85,7 +81,5 @@ def least_activations(muscle_names: tuple[str, ...], abdominal: float) -> Array:
     pattern = re.compile('|'.join(row['pattern'] for row in rows))
     of_group = np.array([pattern.search(name) is not None for name in muscle_names])
     if abdominal > 0.0 and not of_group.any():
-        raise OptionError(
-            f'abdominal_activation {abdominal}: the model has no muscle of {table}'
-        )
+        raise OptionError(f'abdominal_activation {abdominal}: the model has no muscle of {table}')
     return np.where(of_group, abdominal, 0.0)

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Reserve actuators: what carries the torque that muscles of the model cannot.
+"""Reserve actuators: what carries the torque that muscles of the model cannot.
 
 The lifting full-body model has muscles of legs and trunk only.  Where its muscles drive a
 coordinate the reserve is so weak that using it costs more than any muscle and is an alarm;
@@ -23,8 +22,7 @@ _DRIVERS = {'muscles': True, 'reserve': False}
 
 @dataclass(frozen=True)
 class Reserve:
-    """
-    Reserve of one coordinate.
+    """Reserve of one coordinate.
 
     Attributes
     ----------
@@ -47,8 +45,7 @@ class Reserve:
 def read_reserves(
     coordinate_names: tuple[str, ...], path: Traversable | None = None
 ) -> tuple[Reserve, ...]:
-    """
-    Read the reserves of the given coordinates.
+    """Read the reserves of the given coordinates.
 
     Parameters
     ----------

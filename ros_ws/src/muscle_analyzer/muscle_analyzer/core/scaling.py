@@ -19,8 +19,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from muscle_analyzer.core.exceptions import ScalingError
 from muscle_analyzer.core.osim_model import (
     GROUND,
@@ -34,7 +34,6 @@ from muscle_analyzer.core.osim_model import (
     WrapObject,
 )
 
-Array = NDArray[np.float64]
 PathLengths = Callable[[OsimModel], Array]
 
 
@@ -90,8 +89,10 @@ def scale_model(
         raise ScalingError(f'muscle {bad!r}: path length in the default posture is not finite')
     forces = np.ones_like(ratio) if force_factors is None else force_factors
     if forces.shape != ratio.shape or not np.all(np.isfinite(forces) & (forces > 0.0)):
-        raise ScalingError(f'{model.source}: factors of {forces.size} muscle forces are given for '
-                           f'{ratio.size} muscles, or not all are positive')
+        raise ScalingError(
+            f'{model.source}: factors of {forces.size} muscle forces are given for '
+            f'{ratio.size} muscles, or not all are positive'
+        )
     return replace(
         stretched,
         muscles=tuple(

@@ -22,16 +22,14 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from human_model.frames import to_opensim
 from human_model.skeleton import Skeleton
+from human_model.typing import Array
 from muscle_analyzer.core.body_points import upright_state
 from muscle_analyzer.core.exceptions import ScalingError
 from muscle_analyzer.core.multibody import compile_model
 from muscle_analyzer.core.osim_model import OsimModel
-
-Array = NDArray[np.float64]
 
 
 class MassDistribution(StrEnum):

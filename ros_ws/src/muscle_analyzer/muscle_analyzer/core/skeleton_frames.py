@@ -8,14 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from human_model.compiled import body_motion
 from human_model.tree import TreeArrays
+from human_model.typing import Array, IntArray
 from muscle_analyzer.core.kinematics import cross3
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 class SkeletonState(NamedTuple):

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Path of a muscle over a sphere, compiled.
+"""Path of a muscle over a sphere, compiled.
 
 The path lies in the plane of both ends and the centre and is an arc of a great circle between the
 points where lines from the ends touch the sphere.  As in OpenSim's ``WrapSphere`` a segment wraps
@@ -36,8 +35,7 @@ CENTRAL = 1e-5
 def wrap_sphere(
     first: Vector, second: Vector, dimensions: Vector, axis: int, sign: int
 ) -> tuple[int, float, Vector, Vector]:
-    """
-    Wrap one segment over a sphere; arguments and results as `wrap_cylinder`.
+    """Wrap one segment over a sphere; arguments and results as `wrap_cylinder`.
 
     `dimensions` begins with the radius [m].
     """

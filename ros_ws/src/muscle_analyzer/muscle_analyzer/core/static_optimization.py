@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Static optimisation: which muscle forces balance the joint torques (equation 4.10).
+"""Static optimisation: which muscle forces balance the joint torques (equation 4.10).
 
 The sum of squared activations is minimised, or another criterion of muscle recruitment; reserve
 actuators make the balance possible in every frame, are paid for by their square in the same cost,
@@ -19,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from human_model.report import SolveReport, SolveStatus
+from human_model.typing import Array
 from muscle_analyzer.core.dual_newton import columns_of
 from muscle_analyzer.core.exceptions import InputArrayError, OptionError
 from muscle_analyzer.core.min_max import SQUARES_SHARE, solve_min_max
@@ -33,8 +33,6 @@ from muscle_analyzer.core.torque_sharing import (
     share_torque,
 )
 
-Array = NDArray[np.float64]
-
 #: Smallest activation OpenSim 4.6 allows a muscle in static optimisation (``min_control`` of
 #: the muscles of the lifting full-body model).
 MINIMUM_ACTIVATION = 0.01
@@ -45,8 +43,7 @@ NAMED = 3
 
 
 class Criterion(StrEnum):
-    """
-    What muscle recruitment minimises.
+    """What muscle recruitment minimises.
 
     The sums of squares and of cubes are equation 4.10 with the exponents 2 (the thesis, OpenSim's
     default) and 3 (Crowninshield and Brand 1981, J Biomech 14:793); the largest activation is the
@@ -63,8 +60,7 @@ EXPONENTS = {Criterion.SQUARES: 2.0, Criterion.CUBES: 3.0, Criterion.MIN_MAX: 2.
 
 @dataclass(frozen=True)
 class StaticOptimizationOptions:
-    """
-    Settings of the static optimisation.
+    """Settings of the static optimisation.
 
     Attributes
     ----------
@@ -86,8 +82,7 @@ class StaticOptimizationOptions:
 
 
 class Outcome(NamedTuple):
-    """
-    What the optimisation found in one frame.
+    """What the optimisation found in one frame.
 
     Attributes
     ----------
@@ -111,8 +106,7 @@ class Outcome(NamedTuple):
 
 @dataclass(frozen=True)
 class MuscleBalance:
-    """
-    Solution of one frame.
+    """Solution of one frame.
 
     Attributes
     ----------
@@ -157,8 +151,7 @@ class MuscleBalance:
 
 
 class StaticOptimization:
-    """
-    Solver of one model, warm-started from frame to frame.
+    """Solver of one model, warm-started from frame to frame.
 
     Parameters
     ----------
@@ -242,8 +235,7 @@ class StaticOptimization:
         self.past = np.zeros((2, len(self.coordinate_names)))
 
     def solve(self, matrix: Array, torque: Array) -> MuscleBalance:
-        """
-        Share the torques of one frame among the muscles.
+        """Share the torques of one frame among the muscles.
 
         Parameters
         ----------
@@ -292,8 +284,7 @@ class StaticOptimization:
     def balance(
         self, outcome: Outcome, found: Account, build_time: float, solve_time: float
     ) -> MuscleBalance:
-        """
-        Put a solution into words.
+        """Put a solution into words.
 
         Parameters
         ----------

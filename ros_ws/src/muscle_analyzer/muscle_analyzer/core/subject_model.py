@@ -10,8 +10,8 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from muscle_analyzer.core.body_points import BodyPoints, attach_points, scale_factors
 from muscle_analyzer.core.coordinate_ranges import with_published_ranges
 from muscle_analyzer.core.exceptions import ModelFileError
@@ -22,8 +22,6 @@ from muscle_analyzer.core.muscle_paths import posture_paths
 from muscle_analyzer.core.osim_model import OsimModel
 from muscle_analyzer.core.scaling import scale_model
 from muscle_analyzer.core.segment_masses import SegmentMass, with_segment_masses
-
-Array = NDArray[np.float64]
 
 # The lifting full-body model (Beaucage-Gauvreau et al. 2019) as adapted in the pose2sim wheel
 # (BSD-3).

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Curves of the muscle of Thelen 2003 (J Biomech Eng 125:70), as OpenSim's ``Thelen2003Muscle``.
+"""Curves of the muscle of Thelen 2003 (J Biomech Eng 125:70), as OpenSim's ``Thelen2003Muscle``.
 
 Its force-velocity relation depends on the activation; as in OpenSim's static optimisation, the one
 of the fully active muscle is taken, and its force is scaled by the activation.  Default values are
@@ -15,11 +14,9 @@ from collections.abc import Sequence
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from muscle_analyzer.core.osim_model import Muscle
-
-Array = NDArray[np.float64]
 
 KIND = 'Thelen2003Muscle'
 DEFAULTS = {
@@ -59,8 +56,7 @@ def thelen_passive(shape: Array, length: float) -> float:
 
 @njit(cache=True, error_model='numpy')
 def thelen_rate(shape: Array, velocity: float) -> float:
-    """
-    Give the force-velocity multiplier (equations 6 and 7 solved for the force).
+    """Give the force-velocity multiplier (equations 6 and 7 solved for the force).
 
     Beyond a share of the greatest force the relation goes on as a straight line.
     """

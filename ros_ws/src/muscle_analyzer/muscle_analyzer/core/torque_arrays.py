@@ -8,18 +8,13 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from human_model.typing import Array, BoolArray, IntArray
 from muscle_analyzer.core.held import Held
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
 
 
 class TorqueTable(NamedTuple):
-    """
-    What is compared with what, of n_j joints; strength is [lower, upper].
+    """What is compared with what, of n_j joints; strength is [lower, upper].
 
     Attributes
     ----------
@@ -86,8 +81,7 @@ def torques_and_limits(
     net_moment: Array,
     torque: Array,
 ) -> tuple[Array, Array, Array]:
-    """
-    Give torque, lower and upper strength (n, n_j) [N m] of a block.
+    """Give torque, lower and upper strength (n, n_j) [N m] of a block.
 
     Parameters
     ----------

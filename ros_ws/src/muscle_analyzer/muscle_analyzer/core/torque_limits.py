@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Joint torques of an analysed motion beside the strength of the joints (equations 2.14 to 2.19).
+"""Joint torques of an analysed motion beside the strength of the joints (equations 2.14 to 2.19).
 
 Torques come from the musculoskeletal model, angles and speeds from the skeleton of the motion,
 strength from `human_model.strength`.  Which torque belongs to which strength, and with which
@@ -21,12 +20,11 @@ from numpy.typing import NDArray
 from human_model.motion import BodyMotion
 from human_model.strength import JointStrength
 from human_model.subject import Subject
+from human_model.typing import Array
 from muscle_analyzer.core.exceptions import InputArrayError, OptionError
 from muscle_analyzer.core.held import hold
 from muscle_analyzer.core.muscle_analysis import MuscleAnalysis
 from muscle_analyzer.core.torque_arrays import TorqueTable, torques_and_limits
-
-Array = NDArray[np.float64]
 
 #: Skeleton with the strength of one limb.
 LIMB_SKELETON = '3d_40dof'
@@ -36,8 +34,7 @@ PELVIS_AXES = {'forward': 0, 'left': 1, 'up': 2}
 
 @dataclass(frozen=True, eq=False)
 class JointTorques:
-    """
-    Joint torques and dynamic strength of n samples.
+    """Joint torques and dynamic strength of n samples.
 
     Attributes
     ----------
@@ -66,8 +63,7 @@ class JointTorques:
 
 @dataclass(frozen=True)
 class TorqueRow:
-    """
-    One joint of the table.
+    """One joint of the table.
 
     Attributes
     ----------
@@ -92,8 +88,7 @@ class TorqueRow:
 
 
 def read_torque_rows(path: Traversable | None = None) -> tuple[TorqueRow, ...]:
-    """
-    Read which torque is compared with which strength.
+    """Read which torque is compared with which strength.
 
     Parameters
     ----------
@@ -126,8 +121,7 @@ def read_torque_rows(path: Traversable | None = None) -> tuple[TorqueRow, ...]:
 
 
 class TorqueLimits:
-    """
-    Dynamic strength of one subject for the motions of one skeleton.
+    """Dynamic strength of one subject for the motions of one skeleton.
 
     Parameters
     ----------
@@ -149,11 +143,7 @@ class TorqueLimits:
     """
 
     def __init__(
-        self,
-        subject: Subject,
-        skeleton: str,
-        coordinates: tuple[str, ...],
-        coefficient_set: str,
+        self, subject: Subject, skeleton: str, coordinates: tuple[str, ...], coefficient_set: str
     ) -> None:
         self.rows = read_torque_rows()
         self.joint_names = tuple(row.joint for row in self.rows)
@@ -186,8 +176,7 @@ class TorqueLimits:
         self._held = hold(self._table)
 
     def of(self, analysis: MuscleAnalysis, motion: BodyMotion) -> JointTorques:
-        """
-        Put the torques of an analysis beside the strength in the motion's posture and speed.
+        """Put the torques of an analysis beside the strength in the motion's posture and speed.
 
         Parameters
         ----------

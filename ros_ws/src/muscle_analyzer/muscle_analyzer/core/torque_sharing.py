@@ -8,13 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from human_model.typing import Array, BoolArray, IntArray
 from muscle_analyzer.core.dual_newton import Columns, solve_dual
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
 
 #: A coordinate is not balanced by its muscles when the reserve takes more than this share of the
 #: net moment of its joint, all coordinates of the joint together: half of what OpenSim's guide
@@ -27,8 +23,7 @@ RESERVE_CONTROL = 1.0
 
 
 class Actuators(NamedTuple):
-    """
-    Muscles and reserves of the optimisation and what it is told.
+    """Muscles and reserves of the optimisation and what it is told.
 
     Attributes
     ----------
@@ -60,8 +55,7 @@ class Actuators(NamedTuple):
 
 
 class Account(NamedTuple):
-    """
-    What there is to say about a solution.
+    """What there is to say about a solution.
 
     Attributes
     ----------
@@ -87,8 +81,7 @@ def residual_limit(actuators: Actuators, torque: Array) -> float:
 
 @njit(cache=True, error_model='numpy')
 def first_guess(past: Array) -> Array:
-    """
-    Give multipliers (n_c,) to start a frame from: on as the two frames before it went.
+    """Give multipliers (n_c,) to start a frame from: on as the two frames before it went.
 
     `past` (2, n_c) holds theirs, the last first; zeros are no frame.
     """
@@ -114,8 +107,7 @@ def remember(past: Array, multiplier: Array, converged: bool) -> None:
 def share_torque(
     actuators: Actuators, columns: Columns, torque: Array, multiplier: Array
 ) -> tuple[Array, Array, int, bool]:
-    """
-    Minimise a power of the activations from a warm start, and if that fails from a cold one.
+    """Minimise a power of the activations from a warm start, and if that fails from a cold one.
 
     Parameters
     ----------
@@ -166,8 +158,7 @@ def account(
     reserve: Array,
     weak: BoolArray,
 ) -> Account:
-    """
-    Give an account of a solution, and what its reserves do.
+    """Give an account of a solution, and what its reserves do.
 
     Parameters
     ----------

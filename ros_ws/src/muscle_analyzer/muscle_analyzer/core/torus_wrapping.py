@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Path of a muscle through a torus, compiled.
+"""Path of a muscle through a torus, compiled.
 
 As in OpenSim's ``WrapTorus`` the torus is replaced, for each segment, by a long cylinder along the
 tangent of its centre line at one point of it, and the segment passes this cylinder on the side of
@@ -53,8 +52,7 @@ def _root(
 def nearest_of_ring(
     first: Vector, second: Vector, radius: float, axis: int, sign: int
 ) -> tuple[bool, float, float]:
-    """
-    Find the point of a circle about the z axis that a segment's line passes.
+    """Find the point of a circle about the z axis that a segment's line passes.
 
     Parameters
     ----------
@@ -118,8 +116,7 @@ def nearest_of_ring(
 def wrap_torus(
     first: Vector, second: Vector, dimensions: Vector, axis: int, sign: int, geodesic: bool
 ) -> tuple[int, float, Vector, Vector]:
-    """
-    Wrap one segment over a torus about the z axis; arguments and results as `wrap_cylinder`.
+    """Wrap one segment over a torus about the z axis; arguments and results as `wrap_cylinder`.
 
     `dimensions` are the radius of the tube and that of its centre line [m].  A segment that is not
     wrapped is `PASSED`, any other `POSSIBLE`.

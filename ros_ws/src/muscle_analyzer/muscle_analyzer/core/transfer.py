@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 
 from human_model.motion import FRAMES, POINTS, BodyMotion
 from human_model.skeleton import Skeleton
+from human_model.typing import Array
 from muscle_analyzer.core.body_points import upright_coordinates
 from muscle_analyzer.core.exceptions import TransferError
 from muscle_analyzer.core.held import hold
@@ -31,8 +32,6 @@ from muscle_analyzer.core.pose_misfit import Targets
 from muscle_analyzer.core.skeleton_frames import SkeletonMotion
 from muscle_analyzer.core.subject_model import SubjectModel
 from muscle_analyzer.core.transfer_frames import TransferSetup, transfer_frames
-
-Array = NDArray[np.float64]
 
 # The skeletons have no neck: the head stays as it is on the thorax.
 HELD_COORDINATES = ('neck_flexion', 'neck_bending', 'neck_rotation')
@@ -144,9 +143,7 @@ class MotionTransfer:
         model, points = subject.multibody, subject.points
         names = model.coordinate_names
         fitted = np.array([name not in HELD_COORDINATES for name in names])
-        clamped = {
-            c.name: c.clamped for joint in model.source.joints for c in joint.coordinates
-        }
+        clamped = {c.name: c.clamped for joint in model.source.joints for c in joint.coordinates}
         bounded = fitted & np.array([clamped[name] for name in names])
         which_points = _positions(points.names, POINTS)
         segment = skeleton.point_segment[which_points]

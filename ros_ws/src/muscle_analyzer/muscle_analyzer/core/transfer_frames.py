@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from human_model.tree import TreeArrays
+from human_model.typing import Array, BoolArray, IntArray
 from muscle_analyzer.core.held import Held
 from muscle_analyzer.core.multibody import Tree
 from muscle_analyzer.core.pose_fit import Rates, fit_pose, map_rates
@@ -24,10 +24,6 @@ from muscle_analyzer.core.skeleton_frames import (
     set_frame,
     skeleton_state,
 )
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
 
 
 class TransferSetup(NamedTuple):

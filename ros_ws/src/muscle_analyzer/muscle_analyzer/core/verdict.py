@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-What a sample is good for: muscle forces, L5-S1 load and joint torques are judged apart.
+"""What a sample is good for: muscle forces, L5-S1 load and joint torques are judged apart.
 
 Muscles that are too weak at the hip make the muscle forces of a sample doubtful.  They do not
 make its L5-S1 load useless, which hangs on what balances the lumbar joints, and joint torques do
@@ -25,8 +24,7 @@ UNUSABLE = (
 
 @dataclass(frozen=True)
 class Problem:
-    """
-    What is wrong with a sample before it is solved.
+    """What is wrong with a sample before it is solved.
 
     Attributes
     ----------
@@ -56,8 +54,7 @@ def tracker_problem(status: int) -> Problem:
 
 
 def overall(report: SolveReport, problems: Sequence[Problem], notes: Sequence[str]) -> SolveReport:
-    """
-    Give the report of a sample: the first problem decides, then the optimisation.
+    """Give the report of a sample: the first problem decides, then the optimisation.
 
     Parameters
     ----------
@@ -80,8 +77,7 @@ def overall(report: SolveReport, problems: Sequence[Problem], notes: Sequence[st
 
 
 def spine(report: SolveReport, unbalanced: Sequence[str], lumbar: Sequence[str]) -> SolveReport:
-    """
-    Give the report of the L5-S1 load.
+    """Give the report of the L5-S1 load.
 
     Parameters
     ----------
@@ -106,8 +102,7 @@ def torques(report: SolveReport) -> SolveStatus:
 
 
 def worst(reports: Sequence[SolveReport], time: Sequence[float]) -> SolveReport:
-    """
-    Give the report of a block: that of its worst sample, with how many others are not good.
+    """Give the report of a block: that of its worst sample, with how many others are not good.
 
     Parameters
     ----------

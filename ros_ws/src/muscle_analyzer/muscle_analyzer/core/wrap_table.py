@@ -9,13 +9,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from human_model.typing import Array, IntArray
 from muscle_analyzer.core.ellipsoid_wrapping import HYBRID, MIDPOINT
 from muscle_analyzer.core.exceptions import UnsupportedElementError
 from muscle_analyzer.core.multibody import MultibodyModel
 from muscle_analyzer.core.osim_model import OsimModel, PathWrap
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 #: Kinds of wrap object the path functions know.
 CYLINDER, ELLIPSOID, SPHERE, TORUS = 0, 1, 2, 3
@@ -34,8 +32,7 @@ _HALVES = {
 
 
 class WrapTable(NamedTuple):
-    """
-    Wrap objects that muscles of one model use, and these uses.
+    """Wrap objects that muscles of one model use, and these uses.
 
     Attributes
     ----------
@@ -83,8 +80,7 @@ def starts(counts: list[int]) -> IntArray:
 def wrap_table(
     model: OsimModel, multibody: MultibodyModel, uses: list[tuple[int, PathWrap]], geodesic: bool
 ) -> WrapTable:
-    """
-    Collect the wrap objects that muscles use.
+    """Collect the wrap objects that muscles use.
 
     Parameters
     ----------

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Path of a muscle over a cylinder, compiled.
+"""Path of a muscle over a cylinder, compiled.
 
 The conditions under which a path wraps, and on which side, are those of OpenSim's
 ``WrapCylinder`` (Delp et al. 1990, IEEE Trans Biomed Eng 37:757): without a quadrant the
@@ -47,8 +46,7 @@ def _apex_heights(
     far: bool,
     tangents: tuple[float, float, float, float],
 ) -> tuple[float, float]:
-    """
-    Give the heights of the tangent points in the plane of both ends and the apex.
+    """Give the heights of the tangent points in the plane of both ends and the apex.
 
     `tangents` are x and y of the first and of the second tangent point; `far` puts the apex on
     the side of the axis away from the segment.  A height outside those of the ends is replaced by
@@ -84,8 +82,7 @@ def _apex_heights(
 
 @njit(cache=True, error_model='numpy')
 def _tangents(x: float, y: float, radius: float) -> tuple[float, float, float, float]:
-    """
-    Give the tangent points of a circle about the origin seen from a point outside it.
+    """Give the tangent points of a circle about the origin seen from a point outside it.
 
     The first two numbers are x and y of the point counter-clockwise of it (left of it, seen from
     the centre), then come those of the other.
@@ -105,8 +102,7 @@ def _cylinder_sense(
     sign: int,
     heights: tuple[float, float],
 ) -> int:
-    """
-    Choose the way round that uses the active half of a cylinder.
+    """Choose the way round that uses the active half of a cylinder.
 
     `one` and `two` are the `_tangents` of both ends.  The path runs counter-clockwise from the
     left one of the first end to the right one of the second, or clockwise from right to left.  Of
@@ -134,15 +130,9 @@ def _cylinder_sense(
 
 @njit(cache=True, error_model='numpy')
 def wrap_cylinder(
-    first: Vector,
-    second: Vector,
-    dimensions: Vector,
-    axis: int,
-    sign: int,
-    geodesic: bool,
+    first: Vector, second: Vector, dimensions: Vector, axis: int, sign: int, geodesic: bool
 ) -> tuple[int, float, Vector, Vector]:
-    """
-    Wrap one segment over a cylinder about the z axis.
+    """Wrap one segment over a cylinder about the z axis.
 
     Parameters
     ----------

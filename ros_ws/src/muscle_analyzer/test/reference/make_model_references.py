@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Compute where OpenSim puts the bodies, markers and muscles of a model in random postures.
+"""Compute where OpenSim puts the bodies, markers and muscles of a model in random postures.
 
 The result is stored beside this script and read by the tests, which do not need OpenSim.
 Run it in an environment with the ``opensim`` wheel (4.6) and NumPy, never together with CasADi

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Compute reference muscle lengths, moment arms and curve values with OpenSim.
+"""Compute reference muscle lengths, moment arms and curve values with OpenSim.
 
 The result is stored beside this script and read by the tests, which do not need OpenSim.
 Run it in an environment with the ``opensim`` wheel (4.6) and NumPy, never together with
@@ -177,9 +176,7 @@ def main() -> None:
     coordinates = model.getCoordinateSet()
     names = [coordinates.get(i).getName() for i in range(coordinates.getSize())]
     names = [
-        name
-        for name in names
-        if name not in couplers and not coordinates.get(name).get_locked()
+        name for name in names if name not in couplers and not coordinates.get(name).get_locked()
     ]
     muscles = [model.getMuscles().get(i).getName() for i in range(model.getMuscles().getSize())]
     source = f'OpenSim {opensim.GetVersion()}, {arguments.model.name}'

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Compute what Millard and Thelen muscles can do in random postures at random speeds, with OpenSim.
+"""Compute with OpenSim what Millard and Thelen muscles can do in random postures at random speeds.
 
 Run it in an environment with the ``opensim`` wheel (4.6) and NumPy::
 

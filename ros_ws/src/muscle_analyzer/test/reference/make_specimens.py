@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Write `specimens.osim`, a model of nobody that has one of everything that can be read.
+"""Write `specimens.osim`, a model of nobody that has one of everything that can be read.
 
 A chain of bodies with every type of joint and function; muscles across its gimbal joint over
 surfaces of every type, half and method, at random; moving and conditional points. Run it with the

@@ -8,17 +8,12 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.bspline import RestToRestSpline
 from lift_predictor.core.exceptions import PlanError
 from lift_predictor.core.planning.plan_task import LATERAL_TOLERANCE, PlanTask
-from lift_predictor.core.planning.postures import (
-    HIGH_GUESSES,
-    LOW_GUESSES,
-    Posture,
-    find_postures,
-)
+from lift_predictor.core.planning.postures import HIGH_GUESSES, LOW_GUESSES, Posture, find_postures
 from lift_predictor.core.planning.technique import FREE, technique
 from lift_predictor.core.sagittal.grid import LiftBounds
 from lift_predictor.core.sagittal.parameters import N_JOINTS, LiftParameters
@@ -28,8 +23,6 @@ from lift_predictor.core.sagittal.starts import make_starts
 from lift_predictor.core.sagittal.task import POSTURE_TOLERANCE, LiftTask2D, lowest_grip
 from lift_predictor.core.solvers.optimum import Start
 from lift_predictor.core.solvers.stop import StopFlag
-
-Array = NDArray[np.float64]
 
 SAME_POSTURE: Final = 0.02
 """Largest difference of joint angles up to which two postures are one [rad]."""
@@ -51,10 +44,7 @@ class Plan:
     pairs: tuple[Array, ...]
 
     def starts(
-        self,
-        spline: RestToRestSpline,
-        limit: int | None = None,
-        stop: StopFlag | None = None,
+        self, spline: RestToRestSpline, limit: int | None = None, stop: StopFlag | None = None
     ) -> tuple[Start, ...]:
         """Return initial guesses, at most `limit`; `stop` may end the work in between.
 
@@ -135,9 +125,7 @@ def build_plan(
         person.angle_lower, person.angle_upper, low, high, hand, np.array([mass, mass])
     )
     plane = SagittalPlane(0.0, task.lateral)
-    built = LiftTask2D(
-        task.name, 0.0, person, plane, None, parameters, bounds, pairs[0], ()
-    )
+    built = LiftTask2D(task.name, 0.0, person, plane, None, parameters, bounds, pairs[0], ())
     return Plan(built, pairs)
 
 

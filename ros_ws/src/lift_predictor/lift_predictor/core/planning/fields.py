@@ -93,8 +93,10 @@ class Fields:
     def numbers(self, key: str, count: int, *default: tuple[float, ...]) -> tuple[float, ...]:
         """Take a list of so many numbers."""
         value = self.take(key, *default)
-        if not isinstance(value, list | tuple) or len(value) != count or any(
-            isinstance(v, bool) or not isinstance(v, int | float) for v in value
+        if (
+            not isinstance(value, list | tuple)
+            or len(value) != count
+            or any(isinstance(v, bool) or not isinstance(v, int | float) for v in value)
         ):
             raise self.error(key, f'{count} numbers are needed, found {value!r}')
         return tuple(float(v) for v in value)

@@ -118,9 +118,7 @@ class LiftPlanner:
             return _refused(subject, task, error)
 
 
-def plan(
-    subject: Subject, task: PlanTask, listener: Listener | None = None
-) -> PlannedLift:
+def plan(subject: Subject, task: PlanTask, listener: Listener | None = None) -> PlannedLift:
     """Plan one lift with a predictor of default options; for many, keep a `LiftPlanner`."""
     return LiftPlanner().plan(subject, task, listener)
 
@@ -143,9 +141,7 @@ def _planned(
 
 def _refused(subject: Subject, task: PlanTask, error: Exception) -> SagittalPlan:
     unreachable = isinstance(error, UnreachableError)
-    status = (
-        SolveStatus.PREDICTOR_UNREACHABLE if unreachable else SolveStatus.PREDICTOR_BAD_INPUT
-    )
+    status = SolveStatus.PREDICTOR_UNREACHABLE if unreachable else SolveStatus.PREDICTOR_BAD_INPUT
     nan = float('nan')
     mass = nan if task.box_mass is None else task.box_mass
     prediction = PredictedLift2D.failed(

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.exceptions import UnreachableError
 from lift_predictor.core.least_squares import minimise
 from lift_predictor.core.planning.technique import Technique, lowering, technique_range
@@ -17,8 +17,6 @@ from lift_predictor.core.sagittal.kinematics import REACHED, chain_positions
 from lift_predictor.core.sagittal.parameters import JOINTS, LiftParameters
 from lift_predictor.core.sagittal.person import Person
 from lift_predictor.core.solvers.stop import StopFlag
-
-Array = NDArray[np.float64]
 
 GUESSES: Final[dict[str, tuple[float, ...]]] = {
     'semi-squat': (-20.0, 60.0, 10.0, 80.0, 70.0, 20.0),
@@ -154,9 +152,7 @@ def find_postures(
     raise UnreachableError(f'task.{field}: {_what_is_wrong(best, grip, person, technique)}')
 
 
-def _what_is_wrong(
-    best: Posture, grip: Array, person: Person, technique: Technique | None
-) -> str:
+def _what_is_wrong(best: Posture, grip: Array, person: Person, technique: Technique | None) -> str:
     problems = []
     if best.distance > REACHED:
         problems.append(f'the hands stay {1e3 * best.distance:.0f} mm away')
@@ -165,9 +161,7 @@ def _what_is_wrong(
     if best.unbalanced > CLOSE:
         problems.append(f'{1e3 * best.unbalanced:.0f} mm are missing to balance')
     if best.off_technique > CLOSE and technique is not None:
-        problems.append(
-            f'the hips are {1e3 * best.off_technique:.0f} mm from a {technique.name}'
-        )
+        problems.append(f'the hips are {1e3 * best.off_technique:.0f} mm from a {technique.name}')
     span = person.angle_upper - person.angle_lower
     at_limit = (best.q - person.angle_lower < 0.01 * span) | (
         person.angle_upper - best.q < 0.01 * span

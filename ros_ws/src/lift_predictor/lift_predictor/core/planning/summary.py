@@ -85,9 +85,9 @@ def summarise(planned: PlannedLift) -> PlanSummary | None:
     time = motion.time - motion.time[0]
     ground = motion.ground_force.sum(axis=1)
     rows = np.round(np.linspace(0, len(motion) - 1, 11)).astype(int)
-    hands = motion.points[
-        :, [motion.point_names.index(f'hand_{side}') for side in 'rl']
-    ].mean(axis=1)
+    hands = motion.points[:, [motion.point_names.index(f'hand_{side}') for side in 'rl']].mean(
+        axis=1
+    )
     box = np.where(np.isfinite(motion.box_position), motion.box_position, hands)
     effort = planned.effort
     if math.isnan(effort):

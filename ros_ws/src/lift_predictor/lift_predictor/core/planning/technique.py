@@ -19,14 +19,12 @@ from importlib.resources import files
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.exceptions import PlanError
 from lift_predictor.core.sagittal.kinematics import chain_positions
 from lift_predictor.core.sagittal.parameters import LiftParameters
 from lift_predictor.core.sagittal.person import Person
-
-Array = NDArray[np.float64]
 
 FREE: Final = 'free'
 
@@ -46,9 +44,7 @@ class Technique:
 
     def holds(self, index: float) -> bool:
         """Tell whether an index is of this technique."""
-        return (
-            self.lower is None or self.upper is None or bool(self.lower <= index <= self.upper)
-        )
+        return self.lower is None or self.upper is None or bool(self.lower <= index <= self.upper)
 
 
 @cache

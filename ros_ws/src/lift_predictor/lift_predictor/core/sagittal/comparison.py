@@ -8,15 +8,13 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.exceptions import TaskError
 from lift_predictor.core.sagittal.evaluation import SagittalLoads, evaluate
 from lift_predictor.core.sagittal.parameters import JOINTS
 from lift_predictor.core.sagittal.report_function import ReportFunction
 from lift_predictor.core.sagittal.task import LiftTask2D
-
-Array = NDArray[np.float64]
 
 COMPARED_JOINTS: Final = ('spine', 'shoulder', 'elbow', 'hip', 'knee', 'ankle')
 """The dissertation's names of `parameters.JOINTS`, in the same order."""

@@ -6,15 +6,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from human_model.typing import Array
 from lift_predictor.core.bspline import RestToRestSpline, simpson_weights
 from lift_predictor.core.sagittal.grid import CENTRES, Grid
 from lift_predictor.core.sagittal.parameters import LiftParameters
 from lift_predictor.core.sagittal.report_function import ReportFunction
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

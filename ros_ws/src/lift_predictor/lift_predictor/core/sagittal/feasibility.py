@@ -14,15 +14,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.exceptions import TaskError
 from lift_predictor.core.nearest_lift import TIE_BREAK, NearestLift, lighter
 from lift_predictor.core.sagittal.prediction import PredictedLift2D
 from lift_predictor.core.sagittal.task import INSTANTS, Box, LiftTask2D
 from lift_predictor.core.solvers.optimum import Start
-
-Array = NDArray[np.float64]
 
 Solve = Callable[[LiftTask2D, Sequence[Start]], PredictedLift2D]
 

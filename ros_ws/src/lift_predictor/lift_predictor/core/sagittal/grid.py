@@ -9,8 +9,8 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.bspline import RestToRestSpline, require_nodes
 from lift_predictor.core.sagittal.parameters import (
     CIRCLE_BODIES,
@@ -19,8 +19,6 @@ from lift_predictor.core.sagittal.parameters import (
     N_JOINTS,
     N_SCALARS,
 )
-
-Array = NDArray[np.float64]
 
 N_NODE: Final = 3 * N_JOINTS
 """Node variables: joint angles and their first and second derivatives by normalised time."""

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.least_squares import minimise
 from lift_predictor.core.sagittal.parameters import (
     BODIES,
@@ -17,8 +17,6 @@ from lift_predictor.core.sagittal.parameters import (
     CIRCLES_PER_BODY,
     LiftParameters,
 )
-
-Array = NDArray[np.float64]
 
 REACHED = 1e-4
 """Distance of the grip from its target that counts as reached [m]."""
@@ -151,9 +149,7 @@ def reach(
         def one(q: Array, secondary: float = secondary) -> Array:
             return np.asarray(residual(q[None], secondary)[0])
 
-        solution = least_squares(
-            one, posture, bounds=(lower - 1e-9, upper + 1e-9), xtol=1e-10
-        )
+        solution = least_squares(one, posture, bounds=(lower - 1e-9, upper + 1e-9), xtol=1e-10)
         posture = np.clip(solution.x, lower, upper)
         hand = chain_positions(posture, parameters).joints['hand'][0]
         distance = float(np.linalg.norm(hand - grip))

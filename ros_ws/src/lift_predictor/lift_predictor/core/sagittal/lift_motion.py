@@ -7,16 +7,14 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from human_model.frames import matrix_from_quaternion, quaternion_from_matrix
 from human_model.motion import POINTS, BodyMotion
+from human_model.typing import Array
 from lift_predictor.core.sagittal.evaluation import SagittalLoads
 from lift_predictor.core.sagittal.kinematics import pelvis_motion
 from lift_predictor.core.sagittal.parameters import JOINTS
 from lift_predictor.core.sagittal.task import LiftTask2D
-
-Array = NDArray[np.float64]
 
 
 def mtp_torque(task: LiftTask2D, loads: SagittalLoads) -> Array:

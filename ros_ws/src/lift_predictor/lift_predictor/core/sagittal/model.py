@@ -181,10 +181,7 @@ def _rotating(offset: list[Any], angle: tuple[Any, ...]) -> tuple[Any, Any]:
     x = cosine * offset[0] - sine * offset[1]
     y = sine * offset[0] + cosine * offset[1]
     rate2 = angle[1] * angle[1]
-    return (
-        ca.vertcat(x, y),
-        ca.vertcat(-angle[2] * y - rate2 * x, angle[2] * x - rate2 * y),
-    )
+    return (ca.vertcat(x, y), ca.vertcat(-angle[2] * y - rate2 * x, angle[2] * x - rate2 * y))
 
 
 def _cross(a: Any, b: Any) -> Any:

@@ -17,25 +17,11 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
 from lift_predictor.core.bspline import simpson_weights
-from lift_predictor.core.sagittal.grid import (
-    HAND_SCALE,
-    N_NODE,
-    NODE_ROWS,
-    WEIGHT_OFFSET,
-    Grid,
-)
+from lift_predictor.core.sagittal.grid import HAND_SCALE, N_NODE, NODE_ROWS, WEIGHT_OFFSET, Grid
 from lift_predictor.core.sagittal.node_functions import node_functions
-from lift_predictor.core.sagittal.parameters import (
-    N_JOINTS,
-    N_PARAMETERS,
-    N_SCALARS,
-    SHAPES,
-)
-
-Array = NDArray[np.float64]
+from lift_predictor.core.sagittal.parameters import N_JOINTS, N_PARAMETERS, N_SCALARS, SHAPES
 
 
 def programme_functions(grid: Grid) -> list[Any]:
@@ -101,9 +87,7 @@ def programme_functions(grid: Grid) -> list[Any]:
         for end, q in enumerate(q_ends)
     ]
     between = n_angles - 2 * N_JOINTS
-    hess = hess + ca.diagcat(
-        ends[0], ca.DM(between, between), ends[1], -lam_f * dd_heaviness
-    )
+    hess = hess + ca.diagcat(ends[0], ca.DM(between, between), ends[1], -lam_f * dd_heaviness)
 
     point = ([x, p], ['x', 'p'])
     return [

@@ -51,11 +51,7 @@ def node_functions() -> dict[str, Any]:
     multiplier = ca.SX.sym('multiplier', len(NODE_ROWS))
     duration = unpack(p)['duration'][0][0]
     instant = _instant(
-        z[:N_JOINTS],
-        z[N_JOINTS : 2 * N_JOINTS] / duration,
-        z[2 * N_JOINTS :] / duration**2,
-        s,
-        p,
+        z[:N_JOINTS], z[N_JOINTS : 2 * N_JOINTS] / duration, z[2 * N_JOINTS :] / duration**2, s, p
     )
     effort, rows = instant['effort'], instant['rows']
     gradient = ca.gradient(sigma * effort + ca.dot(multiplier, rows), zs)
@@ -67,9 +63,7 @@ def node_functions() -> dict[str, Any]:
     return {
         'node': ca.Function('node', [z, s, p], [effort, rows]),
         'node_jac': ca.Function(
-            'node_jac',
-            [z, s, p],
-            [effort, rows, ca.gradient(effort, zs), ca.jacobian(rows, zs)],
+            'node_jac', [z, s, p], [effort, rows, ca.gradient(effort, zs), ca.jacobian(rows, zs)]
         ),
         'node_hess': ca.Function(
             'node_hess', [z, s, p, sigma, multiplier], [ca.jacobian(gradient, zs)]
@@ -77,9 +71,7 @@ def node_functions() -> dict[str, Any]:
         'hand': ca.Function('hand', [q, p], [hand]),
         'hand_jac': ca.Function('hand_jac', [q, p], [hand, ca.jacobian(hand, q)]),
         'hand_hess': ca.Function(
-            'hand_hess',
-            [q, p, hand_multiplier],
-            [ca.hessian(ca.dot(hand_multiplier, hand), q)[0]],
+            'hand_hess', [q, p, hand_multiplier], [ca.hessian(ca.dot(hand_multiplier, hand), q)[0]]
         ),
         'report': ca.Function(
             'report',

@@ -14,8 +14,8 @@ from dataclasses import replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.sagittal.grid import Grid, LiftBounds
 from lift_predictor.core.sagittal.programme import (
     sagittal_assembler,
@@ -36,8 +36,6 @@ from lift_predictor.core.solvers.solution import InteriorPointOptions, Solution,
 from lift_predictor.core.solvers.solve import solve
 from lift_predictor.core.solvers.spline_programme import SplineProgramme
 from lift_predictor.core.solvers.stop import StopFlag
-
-Array = NDArray[np.float64]
 
 LIFT_OPTIONS: Final = InteriorPointOptions(barrier=3e-3, bound_push=0.1)
 """Found on random lifts: a third fewer iterations than IPOPT's values for general programmes, and
@@ -70,9 +68,7 @@ class LiftOptimiser:
         Forces of a motion.
     """
 
-    def __init__(
-        self, grid: Grid, time_limit: float = 10.0, stop: StopFlag | None = None
-    ) -> None:
+    def __init__(self, grid: Grid, time_limit: float = 10.0, stop: StopFlag | None = None) -> None:
         self.grid, self.time_limit = grid, time_limit
         self.stop = stop or StopFlag()
         library = sagittal_library()
@@ -120,9 +116,7 @@ class LiftOptimiser:
         solution = solve(programme, x0, options, warm)
         if start.near and warm is None and not solution.ok:
             # Not near enough: what is in the way needs a large barrier.
-            options = replace(
-                LIFT_OPTIONS, time_limit=self._left(deadline), stop=self.stop
-            )
+            options = replace(LIFT_OPTIONS, time_limit=self._left(deadline), stop=self.stop)
             before, solution = solution, solve(programme, x0, options)
             iterations = before.iterations + solution.iterations
             solution = replace(solution, iterations=iterations)

@@ -8,11 +8,9 @@ from dataclasses import dataclass, field
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.parameter_vector import pack_blocks, unpack_blocks
-
-Array = NDArray[np.float64]
 
 JOINTS: Final = (
     'lumbar_extension',

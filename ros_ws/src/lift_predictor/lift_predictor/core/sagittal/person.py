@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from importlib.resources import files
 
 import numpy as np
-from numpy.typing import NDArray
 
 from human_model.anthropometry import SegmentParameters, body_dimensions
 from human_model.constants import GRAVITY
@@ -17,6 +16,7 @@ from human_model.inertia import combine
 from human_model.skeleton_2d import Skeleton2D
 from human_model.strength import JointStrength
 from human_model.subject import Subject
+from human_model.typing import Array
 from lift_predictor.core.exceptions import TaskError
 from lift_predictor.core.sagittal.parameters import (
     BODIES,
@@ -26,8 +26,6 @@ from lift_predictor.core.sagittal.parameters import (
     N_BODY,
     N_CIRCLE,
 )
-
-Array = NDArray[np.float64]
 
 COEFFICIENT_SET = 'anderson2007_nonneg'
 

@@ -7,13 +7,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from human_model.frames import matrix_from_quaternion
 from human_model.motion import BodyMotion
+from human_model.typing import Array
 from lift_predictor.core.exceptions import TaskError
-
-Array = NDArray[np.float64]
 
 _MIN_SAMPLES = 6
 _SPLINE_DEGREE = 5

@@ -8,16 +8,14 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from human_model.motion import Lift
 from human_model.report import SolveReport
+from human_model.typing import Array
 from lift_predictor.core.nearest_lift import NearestLift
 from lift_predictor.core.sagittal.parameters import JOINTS
 from lift_predictor.core.sagittal.verify import Verification
 from lift_predictor.core.solvers.optimum import Optimum
-
-Array = NDArray[np.float64]
 
 TORQUE_NAMES: Final = (*JOINTS, 'mtp_angle')
 

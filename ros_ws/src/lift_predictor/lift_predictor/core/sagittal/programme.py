@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.bspline import simpson_weights
 from lift_predictor.core.sagittal.grid import NODE_ROWS, Grid, LiftBounds
 from lift_predictor.core.sagittal.parameters import JOINTS, N_JOINTS, N_SCALARS
@@ -20,7 +20,6 @@ from lift_predictor.core.solvers.spline_programme import Assembler, SplineProgra
 if TYPE_CHECKING:
     from lift_predictor.core.solvers.node_function import NodeFunction
 
-Array = NDArray[np.float64]
 
 SOURCES: Final = (
     '../parameter_vector.py',

@@ -14,17 +14,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
-import numpy as np
-from numpy.typing import NDArray
-
+from human_model.typing import Array
 from lift_predictor.core.dense_grid import DENSITY
 from lift_predictor.core.sagittal.grid import Grid
 from lift_predictor.core.sagittal.optimiser import LiftOptimiser
 from lift_predictor.core.sagittal.task import LiftTask2D
 from lift_predictor.core.sagittal.verify import Verification, verify
 from lift_predictor.core.solvers.optimum import Optimum
-
-Array = NDArray[np.float64]
 
 MARGIN_FACTOR: Final = 1.05
 """First margin against a violation between the nodes, in units of the violation; twice as much
@@ -87,9 +83,7 @@ class Refiner:
                 if time.perf_counter() > deadline:
                     return (runs[0], *tried, *runs[1:]), check
                 finer = self._optimiser(factor)
-                again = finer.solve(
-                    vector, task.bounds, candidate.as_start(), deadline=deadline
-                )
+                again = finer.solve(vector, task.bounds, candidate.as_start(), deadline=deadline)
                 again = replace(again, start=f'{again.start}, {finer.grid.n_nodes} nodes')
                 if not again.converged:
                     tried.append(again)

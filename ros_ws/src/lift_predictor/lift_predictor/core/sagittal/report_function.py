@@ -7,14 +7,12 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.sagittal.grid import CENTRES, NODE_ROWS, REPORT_OUTPUTS
 from lift_predictor.core.sagittal.parameters import BODIES, N_JOINTS
 from lift_predictor.core.solvers.library import NodeLibrary
 from lift_predictor.core.solvers.node_evaluation import evaluate_rows
-
-Array = NDArray[np.float64]
 
 WIDTHS: Final = {
     'torque': N_JOINTS,

@@ -14,14 +14,12 @@ from importlib.resources import files
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.bspline import RestToRestSpline
 from lift_predictor.core.exceptions import TaskError
 from lift_predictor.core.sagittal.parameters import JOINTS
 from lift_predictor.core.solvers.optimum import Start
-
-Array = NDArray[np.float64]
 
 N_CONTROL: Final = 7
 """Control points of the library's splines."""

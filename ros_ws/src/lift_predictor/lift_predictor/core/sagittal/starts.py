@@ -7,15 +7,13 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.bspline import RestToRestSpline
 from lift_predictor.core.sagittal.kinematics import chain_positions, reach
 from lift_predictor.core.sagittal.plane import SagittalMotion
 from lift_predictor.core.sagittal.task import LiftTask2D
 from lift_predictor.core.solvers.optimum import Start
-
-Array = NDArray[np.float64]
 
 _DENSE: Final = 41
 _ARC_POSTURES: Final = 9

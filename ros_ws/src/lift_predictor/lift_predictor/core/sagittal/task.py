@@ -9,17 +9,15 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from human_model.motion import BodyMotion, Lift
+from human_model.typing import Array
 from lift_predictor.core.exceptions import AsymmetricLiftError, TaskError, UnreachableError
 from lift_predictor.core.sagittal.grid import LiftBounds
 from lift_predictor.core.sagittal.kinematics import REACHED, chain_positions, reach
 from lift_predictor.core.sagittal.parameters import JOINTS, LiftParameters
 from lift_predictor.core.sagittal.person import Person
 from lift_predictor.core.sagittal.plane import SagittalMotion, SagittalPlane, sagittal_motion
-
-Array = NDArray[np.float64]
 
 POSTURE_TOLERANCE: Final = 0.15
 """Epsilon of equation 4.8 [rad]."""

@@ -8,16 +8,14 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.dense_grid import DENSITY, near_nodes
 from lift_predictor.core.sagittal.evaluation import evaluate, sample
 from lift_predictor.core.sagittal.grid import NODE_UPPER, Grid, LiftBounds
 from lift_predictor.core.sagittal.kinematics import chain_positions
 from lift_predictor.core.sagittal.parameters import JOINTS, LiftParameters
 from lift_predictor.core.sagittal.report_function import ReportFunction
-
-Array = NDArray[np.float64]
 
 TOLERANCE: Final[dict[str, float]] = {
     'joint_angle [rad]': 1e-3,

@@ -11,10 +11,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.solvers.layout import Group
 from lift_predictor.core.solvers.library import NodeLibrary
-
-Array = NDArray[np.float64]
 
 _INT = ctypes.POINTER(ctypes.c_int)
 _DOUBLE = ctypes.POINTER(ctypes.c_double)

@@ -15,16 +15,14 @@ import time
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.solvers.line_filter import Filter
 from lift_predictor.core.solvers.newton import InertiaMemory, NewtonSystem
 from lift_predictor.core.solvers.programme import Programme
 from lift_predictor.core.solvers.restoration import restore, row_violation
 from lift_predictor.core.solvers.scaling import ScaledPoint, ScaledProgramme
 from lift_predictor.core.solvers.solution import InteriorPointOptions, Solution, Status
-
-Array = NDArray[np.float64]
 
 KAPPA_EPSILON, KAPPA_MU, THETA_MU = 10.0, 0.2, 1.5
 TAU_LEAST, KAPPA_SIGMA, MULTIPLIER_SCALE = 0.99, 1e10, 100.0
@@ -131,9 +129,7 @@ class _Solver:
     def _warm(self, v: Array, warm: Solution) -> _State:
         p = self.p
         y = p.objective_scale * warm.row_multiplier / p.row_scale
-        bound = np.concatenate(
-            (p.objective_scale * warm.bound_multiplier[p.free], y[p.unequal])
-        )
+        bound = np.concatenate((p.objective_scale * warm.bound_multiplier[p.free], y[p.unequal]))
         low, high = self._distances(v)
         zl = np.where(self.has_l, np.maximum(-bound, self.mu / low), 0.0)
         zu = np.where(self.has_u, np.maximum(bound, self.mu / high), 0.0)
@@ -176,13 +172,9 @@ class _Solver:
         primal, dual, complementarity = self._errors(mu)
         z = float(st.zl.sum() + st.zu.sum())
         bounds = int(self.has_l.sum() + self.has_u.sum())
-        s_d = max(
-            MULTIPLIER_SCALE, (float(np.abs(st.y).sum()) + z) / max(len(st.y) + bounds, 1)
-        )
+        s_d = max(MULTIPLIER_SCALE, (float(np.abs(st.y).sum()) + z) / max(len(st.y) + bounds, 1))
         s_c = max(MULTIPLIER_SCALE, z / max(bounds, 1))
-        return max(
-            primal, MULTIPLIER_SCALE * dual / s_d, MULTIPLIER_SCALE * complementarity / s_c
-        )
+        return max(primal, MULTIPLIER_SCALE * dual / s_d, MULTIPLIER_SCALE * complementarity / s_c)
 
     def _late(self) -> bool:
         if self.options.stop is not None:
@@ -384,9 +376,7 @@ def _finish(solver: _Solver, status: Status) -> Solution:
     has_l, has_u = solver.has_l, solver.has_u
     low, high = st.v - p.lower, p.upper - st.v
     scale = 1.0 / p.objective_scale
-    products = scale * np.concatenate(
-        ((st.zl[has_l] * low[has_l]), (st.zu[has_u] * high[has_u]))
-    )
+    products = scale * np.concatenate(((st.zl[has_l] * low[has_l]), (st.zu[has_u] * high[has_u])))
     return Solution(
         status, x, raw.objective, y, bound, solver.iterations,
         max(float(excess.max(initial=0.0)), 0.0),

@@ -10,8 +10,8 @@ from typing import Any, Final
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.sagittal.grid import LiftBounds
 from lift_predictor.core.sagittal.programme import variable_name
 from lift_predictor.core.solvers.compiled import Programme
@@ -24,8 +24,6 @@ from lift_predictor.core.solvers.optimum import (
     best_first,
     runs_until,
 )
-
-Array = NDArray[np.float64]
 
 TOLERANCE: Final = 1e-8
 """IPOPT's default relative tolerance."""

@@ -11,7 +11,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from human_model.typing import Array
+
 Indices = NDArray[np.int32]
 
 GROUPING_LIMIT = 1.34
@@ -119,7 +120,5 @@ class Group:
         grouped = sum(-(-len(piece) // lanes) for piece in pieces)
         if grouped > GROUPING_LIMIT * -(-self.n_points // lanes):
             pieces = [list(range(self.n_points))]
-        rows = [
-            piece[i : i + lanes] for piece in pieces for i in range(0, len(piece), lanes)
-        ]
+        rows = [piece[i : i + lanes] for piece in pieces for i in range(0, len(piece), lanes)]
         return np.array([row + [-1] * (lanes - len(row)) for row in rows], dtype=np.int32)

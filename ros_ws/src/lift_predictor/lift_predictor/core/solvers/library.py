@@ -154,9 +154,7 @@ def _compile(
         cache.run_compiler([*command, '-lm'])
 
 
-def _virtual(
-    make: Callable[[], Sequence[NodeFunction]], start: float, why: str
-) -> NodeLibrary:
+def _virtual(make: Callable[[], Sequence[NodeFunction]], start: float, why: str) -> NodeLibrary:
     derived = [function.derived() for function in make()]
     functions = {
         f.name: FunctionFacts(i, f.n_in, f.n_parameters, f.n_rows) for i, f in enumerate(derived)

@@ -7,11 +7,9 @@ from __future__ import annotations
 import ctypes
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.solvers.library import NodeLibrary
-
-Array = NDArray[np.float64]
 
 
 def evaluate_rows(library: NodeLibrary, name: str, inputs: Array, parameters: Array) -> Array:
@@ -38,9 +36,7 @@ def evaluate_rows(library: NodeLibrary, name: str, inputs: Array, parameters: Ar
     if inputs.ndim != 2 or inputs.shape[1] != facts.n_in:
         raise ValueError(f'{name}: inputs of shape {inputs.shape}, expected (n, {facts.n_in})')
     if parameters.shape != (facts.n_parameters,):
-        raise ValueError(
-            f'{name}: {parameters.shape} parameters, expected {facts.n_parameters}'
-        )
+        raise ValueError(f'{name}: {parameters.shape} parameters, expected {facts.n_parameters}')
     if library.compiled is None:
         outputs = library.virtual[name].value.map(len(inputs))(inputs.T, parameters)
         return np.asarray(outputs).T[:, 1:]

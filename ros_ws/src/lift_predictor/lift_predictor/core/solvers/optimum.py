@@ -9,10 +9,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-import numpy as np
-from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
+from human_model.typing import Array
 
 FEASIBLE: Final = 1e-5
 """Largest violation of a scaled constraint row that counts as met."""

@@ -10,10 +10,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
+from human_model.typing import Array
 
 
 class Linearisation(Protocol):

@@ -8,12 +8,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.solvers.newton import cholesky, cholesky_solve
 from lift_predictor.core.solvers.scaling import ScaledProgramme
-
-Array = NDArray[np.float64]
 
 FIRST_DAMPING, DAMPING_GROWTH, DAMPING_DECAY = 1e-6, 10.0, 0.1
 LARGEST_DAMPING = 1e12

@@ -5,11 +5,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.solvers.programme import Linearisation, Programme
-
-Array = NDArray[np.float64]
 
 BOUND_RELAXATION = 1e-8
 """Bounds of rows are relaxed by this, relative to their size, as IPOPT does with all bounds: there

@@ -7,12 +7,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
-import numpy as np
-from numpy.typing import NDArray
-
+from human_model.typing import Array
 from lift_predictor.core.solvers.stop import StopFlag
-
-Array = NDArray[np.float64]
 
 
 class Status(StrEnum):

@@ -9,14 +9,12 @@ import time
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.solvers.compiled_assembler import CompiledAssembler
 from lift_predictor.core.solvers.programme import Programme
 from lift_predictor.core.solvers.solution import InteriorPointOptions, Solution, Status
 from lift_predictor.core.solvers.spline_programme import SplineProgramme
-
-Array = NDArray[np.float64]
 
 STATUS: Final = (
     Status.OPTIMAL, Status.INFEASIBLE, Status.ITERATION_LIMIT, Status.TIME_LIMIT, Status.STUCK,

@@ -10,11 +10,10 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.solvers.compiled_assembler import CompiledAssembler
 from lift_predictor.core.solvers.layout import Group
 from lift_predictor.core.solvers.library import NodeLibrary
-
-Array = NDArray[np.float64]
 
 
 class Assembler(Protocol):
@@ -50,7 +49,6 @@ class Assembler(Protocol):
     def condensed(self, sigma: float, multiplier: Array, weight: Array) -> Array:
         """Hessian of the Lagrangian and weighted squares of the rows."""
         ...
-
 
 
 def make_assembler(library: NodeLibrary, groups: Sequence[Group], n: int) -> Assembler:

@@ -9,9 +9,8 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from human_model.typing import Array
 
 
 class SymbolicProgramme:

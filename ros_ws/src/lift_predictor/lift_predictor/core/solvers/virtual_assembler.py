@@ -9,11 +9,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.solvers.layout import Group
 from lift_predictor.core.solvers.library import NodeLibrary
 from lift_predictor.core.solvers.node_function import DerivedFunction
-
-Array = NDArray[np.float64]
 
 
 class _VirtualGroup:

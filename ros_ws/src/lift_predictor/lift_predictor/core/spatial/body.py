@@ -12,11 +12,7 @@ import casadi as ca
 from lift_predictor.core.spatial.parameters import MIRROR, SIDES, SPLINED, unpack
 from lift_predictor.core.spatial.rotations import Turning
 from lift_predictor.core.spatial.stance import stance
-from lift_predictor.core.spatial.stance_motion import (
-    hip_flexion_rate,
-    leg_motion,
-    pelvis_motion,
-)
+from lift_predictor.core.spatial.stance_motion import hip_flexion_rate, leg_motion, pelvis_motion
 
 _X, _Y, _Z = range(3)
 

@@ -5,14 +5,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from human_model.motion import BodyMotion
+from human_model.typing import Array
 from lift_predictor.core.spatial.frame import StanceFrame
 from lift_predictor.core.spatial.parameters import SIDES, SPHERE_BODIES, SpatialParameters
 from lift_predictor.core.spatial.person import SpatialPerson
-
-Array = NDArray[np.float64]
 
 
 def recorded_gaps(

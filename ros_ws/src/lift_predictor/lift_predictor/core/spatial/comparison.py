@@ -7,16 +7,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.sagittal.comparison import pearson, rms_difference
 from lift_predictor.core.solvers.library import NodeLibrary
 from lift_predictor.core.spatial.evaluation import SpatialLoads, evaluate
 from lift_predictor.core.spatial.parameters import STRONG
 from lift_predictor.core.spatial.prediction import PredictedLift3D
 from lift_predictor.core.spatial.task import KEY_JOINTS, SpatialTask
-
-Array = NDArray[np.float64]
 
 DERIVATIVE_DEGREE = 5
 
@@ -104,9 +102,7 @@ def compare(
         return np.asarray(np.interp(at, motion.time, values))
 
     angles = [(recorded.key[name], there(motion.coordinate(name))) for name in KEY_JOINTS]
-    feet = [
-        (recorded.vertical[:, k], there(own.ground_force[:, k, 2])) for k in range(2)
-    ]
+    feet = [(recorded.vertical[:, k], there(own.ground_force[:, k, 2])) for k in range(2)]
     vertical = recorded.vertical.sum(axis=1), there(own.ground_force[:, :, 2].sum(axis=1))
     forward = recorded.forward, there(own.ground_force[:, :, 0].sum(axis=1))
     sampled = motion.time - motion.time[0]

@@ -9,8 +9,8 @@ from typing import Any, Final
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.spatial.parameters import (
     DEPENDENT,
     N_PARAMETERS,
@@ -21,8 +21,6 @@ from lift_predictor.core.spatial.parameters import (
 )
 from lift_predictor.core.spatial.rotations import Turning
 from lift_predictor.core.spatial.stance import stance
-
-Array = NDArray[np.float64]
 
 _PELVIS: Final = (
     'pelvis_tx',

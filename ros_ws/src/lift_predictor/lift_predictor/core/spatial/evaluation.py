@@ -8,13 +8,11 @@ import ctypes
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.solvers.library import NodeLibrary
 from lift_predictor.core.spatial.grid import HAND_SCALE, REPORT_OUTPUTS, SpatialGrid
 from lift_predictor.core.spatial.parameters import SpatialParameters
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,9 +111,7 @@ def evaluate(
     return SpatialLoads(**values)
 
 
-def lowering(
-    library: NodeLibrary, q: Array, parameters: SpatialParameters
-) -> tuple[Array, Array]:
+def lowering(library: NodeLibrary, q: Array, parameters: SpatialParameters) -> tuple[Array, Array]:
     """How far hips and C7 are below their height in upright standing in postures q (n, 26) [m]."""
     whole = replace(parameters, technique=np.array([0.0, 1.0])).pack()
     hips, rest = HAND_SCALE * _run(library, 'technique', np.ascontiguousarray(q), whole).T
@@ -135,5 +131,3 @@ def _run(library: NodeLibrary, name: str, inputs: Array, parameters: Array) -> A
         )),
     )  # fmt: skip
     return out[:, 1:]
-
-

@@ -7,15 +7,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from human_model.frames import matrix_from_quaternion
 from human_model.motion import BodyMotion
+from human_model.typing import Array
 from lift_predictor.core.exceptions import TaskError
 from lift_predictor.core.spatial.parameters import SIDES, SPLINED
 from lift_predictor.core.spatial.person import SpatialPerson
-
-Array = NDArray[np.float64]
 
 MIN_SAMPLES = 6
 FULL_LEG = 1.0 - 1e-9
@@ -115,9 +113,7 @@ def splined_motion(motion: BodyMotion, frame: StanceFrame, person: SpatialPerson
         raise TaskError(
             f'motion: {len(motion)} samples in the lift, at least {MIN_SAMPLES} are needed'
         )
-    values = {
-        name: motion.coordinate(name) for name in SPLINED if name in motion.coordinates
-    }
+    values = {name: motion.coordinate(name) for name in SPLINED if name in motion.coordinates}
     hips = np.stack([frame.into(motion.point(f'hip_{side}')) for side in SIDES], axis=1)
     pelvis = frame.rotation().T @ matrix_from_quaternion(motion.frame('pelvis'))
     return place_pelvis(values, hips, pelvis, frame.ankle, person)
@@ -144,9 +140,7 @@ def place_pelvis(
     thigh, shank = person.leg
     span = FULL_LEG * (thigh + shank)
     reach = np.minimum(np.linalg.norm(hips - ankle, axis=2), span)
-    knees = np.arccos(
-        np.clip((reach**2 - thigh**2 - shank**2) / (2.0 * thigh * shank), -1.0, 1.0)
-    )
+    knees = np.arccos(np.clip((reach**2 - thigh**2 - shank**2) / (2.0 * thigh * shank), -1.0, 1.0))
     knee = knees.mean(axis=1)
     centre = hips.mean(axis=1)
     forward = centre[:, 0] - ankle[:, 0].mean()

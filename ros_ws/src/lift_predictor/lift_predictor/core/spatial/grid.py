@@ -9,8 +9,8 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.bspline import RestToRestSpline, require_nodes
 from lift_predictor.core.spatial.parameters import (
     DEPENDENT,
@@ -20,8 +20,6 @@ from lift_predictor.core.spatial.parameters import (
     SPLINED,
     STRONG,
 )
-
-Array = NDArray[np.float64]
 
 N_NODE: Final = 3 * N_SPLINED
 """Node variables: splined coordinates, first and second derivatives by normalised time."""

@@ -7,16 +7,14 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from human_model.motion import BodyMotion
 from human_model.skeleton import ExternalForce
+from human_model.typing import Array
 from lift_predictor.core.spatial.coordinates import skeleton_motion
 from lift_predictor.core.spatial.evaluation import SpatialLoads
 from lift_predictor.core.spatial.parameters import SIDES
 from lift_predictor.core.spatial.task import SpatialTask
-
-Array = NDArray[np.float64]
 
 FREE: Final = 6
 """Coordinates of the free pelvis: no joints."""

@@ -85,9 +85,7 @@ def maximum_weight(
     """
     weighting = weighting or Weighting()
     pure = for_weight_alone(task)
-    far = tuple(
-        replace(start, name=f'{start.name}, far', barrier=FAR) for start in starts
-    )
+    far = tuple(replace(start, name=f'{start.name}, far', barrier=FAR) for start in starts)
     heaviest = predictor.solve_task(pure, (*starts, *far), progress)
     first = _result(predictor, pure, Weighting(0.0, 1.0), heaviest, None)
     scale = first.normalisation
@@ -97,9 +95,7 @@ def maximum_weight(
         task, (weighting.effort / scale.effort, weighting.box / scale.log_weight)
     )
     near = SpatialStart('heaviest box', heaviest.control, heaviest.box_mass, heaviest.duration)
-    best = predictor.solve_task(
-        weighted, (near, *far), progress, hops=predictor.options.hops
-    )
+    best = predictor.solve_task(weighted, (near, *far), progress, hops=predictor.options.hops)
     return _result(predictor, weighted, weighting, best, scale)
 
 
@@ -134,6 +130,4 @@ def _result(
     weight = prediction.box_mass * task.parameters.gravity
     effort = total_effort(predictor, task, prediction)
     own = Normalisation(effort, abs(math.log(weight + WEIGHT_OFFSET)), prediction.box_mass)
-    return SpatialMaximum(
-        prediction, weighting, prediction.box_mass, weight, effort, scale or own
-    )
+    return SpatialMaximum(prediction, weighting, prediction.box_mass, weight, effort, scale or own)

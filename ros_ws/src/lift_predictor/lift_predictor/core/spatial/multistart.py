@@ -14,14 +14,12 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lift_predictor.core.spatial.grid import SpatialGrid
 from lift_predictor.core.spatial.prediction import SpatialOptimum
 from lift_predictor.core.spatial.refine import as_start
 from lift_predictor.core.spatial.starts import SpatialStart, mirrored
 
-Array = NDArray[np.float64]
 Progress = Callable[[int, int, float], None]
 """Told after each run: runs done, runs in all, best objective so far (NaN: none yet)."""
 
@@ -94,13 +92,8 @@ def displaced(
     shift = SPREAD * rng.normal(size=(rows, start.control.shape[1]))
     if mirror:
         shift = mirrored(shift)
-    return SpatialStart(
-        f'hop {number + 1}', start.control + shift, start.box_mass, start.duration
-    )
+    return SpatialStart(f'hop {number + 1}', start.control + shift, start.box_mass, start.duration)
 
 
 def _rank(one: SpatialOptimum) -> tuple[bool, float]:
-    return (
-        not one.converged,
-        one.solution.objective if one.converged else one.solution.primal,
-    )
+    return (not one.converged, one.solution.objective if one.converged else one.solution.primal)

@@ -12,11 +12,9 @@ from dataclasses import dataclass, field
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.parameter_vector import pack_blocks, unpack_blocks
-
-Array = NDArray[np.float64]
 
 SIDES: Final = ('r', 'l')
 MIRROR: Final = {'r': 1.0, 'l': -1.0}
@@ -40,15 +38,7 @@ SPINE: Final = tuple(
     for joint in ('lumbar', 'thorax')
     for name in ('extension', 'bending', 'rotation')
 )
-ARM: Final = (
-    'arm_flex',
-    'arm_add',
-    'arm_rot',
-    'elbow_flex',
-    'pro_sup',
-    'wrist_flex',
-    'wrist_dev',
-)
+ARM: Final = ('arm_flex', 'arm_add', 'arm_rot', 'elbow_flex', 'pro_sup', 'wrist_flex', 'wrist_dev')
 SPLINED: Final = (*ROOT, *SPINE, *(f'{name}_{side}' for side in SIDES for name in ARM))
 """Coordinates that are splines in time: the optimisation variables."""
 

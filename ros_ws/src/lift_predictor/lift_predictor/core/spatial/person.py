@@ -10,7 +10,6 @@ from importlib.resources import files
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from human_model.anthropometry import SegmentParameters, body_dimensions
 from human_model.constants import GRAVITY
@@ -18,6 +17,7 @@ from human_model.inertia import combine
 from human_model.skeleton_3d import Skeleton3D
 from human_model.strength import JointStrength
 from human_model.subject import Subject
+from human_model.typing import Array
 from lift_predictor.core.exceptions import TaskError
 from lift_predictor.core.spatial.parameters import (
     BODIES,
@@ -26,8 +26,6 @@ from lift_predictor.core.spatial.parameters import (
     SPHERE_NAMES,
     STRONG,
 )
-
-Array = NDArray[np.float64]
 
 COEFFICIENT_SET: Final = 'anderson2007_nonneg'
 INWARD_LEAN: Final = 0.6

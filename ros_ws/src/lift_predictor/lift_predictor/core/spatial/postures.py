@@ -8,8 +8,8 @@ from dataclasses import replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.exceptions import UnreachableError
 from lift_predictor.core.solvers.library import NodeLibrary
 from lift_predictor.core.solvers.solution import InteriorPointOptions, Solution
@@ -20,8 +20,6 @@ from lift_predictor.core.spatial.parameters import N_SPLINED, SPLINED
 from lift_predictor.core.spatial.programme import posture_assembler
 from lift_predictor.core.spatial.starts import SpatialStart, leads_right, mirrored, through
 from lift_predictor.core.spatial.task import SpatialTask
-
-Array = NDArray[np.float64]
 
 STANDING: Final = {'ankle_mean': 5.0, 'hip_mean': 15.0, 'knee_angle': 12.0,
                    'lumbar_extension': -8.0, 'thorax_extension': -4.0, 'arm_flex': 45.0,
@@ -85,9 +83,7 @@ class PostureFinder:
         # Where the mass is open, the search begins light.
         mass = float(task.bounds.box_mass[0])
         ends = [self.postures(task, end, mass, guesses) for end in (0, 1)]
-        pairs = [
-            (one[1] + other[1], one[0], other[0]) for one in ends[0] for other in ends[1]
-        ]
+        pairs = [(one[1] + other[1], one[0], other[0]) for one in ends[0] for other in ends[1]]
         best, *others = sorted(pairs, key=lambda pair: pair[0])
         starts = [through(task, grid, (best[1], None, best[2]), 'between postures', mass)]
         if others:
@@ -169,9 +165,7 @@ class PostureFinder:
             _row_name,
             lambda index: (*SPLINED, 'mass of the box', 'duration')[index],
         )
-        solution: Solution = solve(
-            programme, np.append(begin, still), self._options
-        )
+        solution: Solution = solve(programme, np.append(begin, still), self._options)
         if not solution.ok:
             worst = ', '.join(f'{name} ({value:.3g})' for name, value in solution.violated)
             where = task.bounds.hand[end].reshape(2, 3).mean(axis=0).round(3).tolist()

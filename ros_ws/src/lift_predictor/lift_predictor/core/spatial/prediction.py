@@ -8,17 +8,15 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from human_model.motion import Lift
 from human_model.report import SolveReport
+from human_model.typing import Array
 from lift_predictor.core.nearest_lift import NearestLift
 from lift_predictor.core.solvers.solution import Solution
 from lift_predictor.core.spatial.evaluation import SpatialLoads
 from lift_predictor.core.spatial.parameters import N_SCALARS, N_SPLINED
 from lift_predictor.core.spatial.verify import SpatialVerification
-
-Array = NDArray[np.float64]
 
 HANDS: Final = ('(3.11)', '(3.12)', '(3.13)')
 """Equations that say where the hands are, as rows name them."""

@@ -10,7 +10,6 @@ from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from human_model.anthropometry import SegmentParameters
 from human_model.errors import HumanModelError
@@ -30,11 +29,7 @@ from lift_predictor.core.spatial.comparison import SpatialComparison, compare
 from lift_predictor.core.spatial.evaluation import evaluate, sample
 from lift_predictor.core.spatial.feasibility import lighter_lift
 from lift_predictor.core.spatial.grid import SpatialGrid
-from lift_predictor.core.spatial.lift_motion import (
-    body_motion,
-    feet_moved,
-    joint_torques,
-)
+from lift_predictor.core.spatial.lift_motion import body_motion, feet_moved, joint_torques
 from lift_predictor.core.spatial.multistart import Progress, runs_from
 from lift_predictor.core.spatial.person import COEFFICIENT_SET, SpatialPerson
 from lift_predictor.core.spatial.prediction import PredictedLift3D, SpatialOptimum
@@ -46,15 +41,8 @@ from lift_predictor.core.spatial.programme import (
 from lift_predictor.core.spatial.recorded_task import recorded_task
 from lift_predictor.core.spatial.refine import Refiner
 from lift_predictor.core.spatial.starts import SpatialStart, leads_right, recorded_starts
-from lift_predictor.core.spatial.task import (
-    SpatialTask,
-    Windows,
-    without_ground_windows,
-)
+from lift_predictor.core.spatial.task import SpatialTask, Windows, without_ground_windows
 from lift_predictor.core.spatial.verify import SpatialVerification
-
-Array = NDArray[np.float64]
-
 
 FOOT_TOLERANCE: Final = 1e-6
 """Distance of the feet from their place above which there are no data [m]."""
@@ -208,9 +196,7 @@ class SpatialPredictor:
             task = self.task(lift, box)
         except (TaskError, HumanModelError) as error:
             report = SolveReport(
-                SolveStatus.PREDICTOR_BAD_INPUT,
-                str(error),
-                build_time=time.perf_counter() - begin,
+                SolveStatus.PREDICTOR_BAD_INPUT, str(error), build_time=time.perf_counter() - begin
             )
             duration = lift.end - lift.start
             return PredictedLift3D.failed(lift.lift_id, box.mass, duration, report), None

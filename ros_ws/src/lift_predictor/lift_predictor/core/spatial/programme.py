@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.bspline import simpson_weights
 from lift_predictor.core.solvers.layout import Channel, Group
 from lift_predictor.core.solvers.library import NodeLibrary, load_library
@@ -26,7 +26,6 @@ from lift_predictor.core.spatial.parameters import N_SCALARS, N_SPLINED, Spatial
 if TYPE_CHECKING:
     from lift_predictor.core.solvers.node_function import NodeFunction
 
-Array = NDArray[np.float64]
 
 SOURCES: Final = (
     'parameter_vector.py',

@@ -7,19 +7,14 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from human_model.motion import BodyMotion, Lift
+from human_model.typing import Array
 from lift_predictor.core.exceptions import TaskError
 from lift_predictor.core.sagittal.task import Box
 from lift_predictor.core.spatial.clearance import recorded_gaps
 from lift_predictor.core.spatial.frame import StanceFrame, splined_motion
-from lift_predictor.core.spatial.grid import (
-    GROUND_ROWS,
-    SpatialBounds,
-    SpatialGrid,
-    row_slice,
-)
+from lift_predictor.core.spatial.grid import GROUND_ROWS, SpatialBounds, SpatialGrid, row_slice
 from lift_predictor.core.spatial.parameters import SIDES, SpatialParameters
 from lift_predictor.core.spatial.person import SpatialPerson
 from lift_predictor.core.spatial.task import (
@@ -32,8 +27,6 @@ from lift_predictor.core.spatial.task import (
     place_task,
 )
 from lift_predictor.core.spatial.windows import near_posture
-
-Array = NDArray[np.float64]
 
 
 def recorded_task(
@@ -131,10 +124,7 @@ def _placed_box(
 
 
 def _fit_spheres(
-    parameters: SpatialParameters,
-    motion: BodyMotion,
-    frame: StanceFrame,
-    person: SpatialPerson,
+    parameters: SpatialParameters, motion: BodyMotion, frame: StanceFrame, person: SpatialPerson
 ) -> tuple[SpatialParameters, tuple[str, ...]]:
     """Shrink the spheres that the recorded lift itself went through: the body is thinner."""
     gaps = recorded_gaps(parameters, motion, frame, person).min(axis=0)

@@ -64,9 +64,7 @@ class Turning:
         d(I w)/dt in the world's axes [N m].
         """
         xx, yy, zz, xy, xz, yz = inertia
-        tensor = ca.vertcat(
-            ca.horzcat(xx, xy, xz), ca.horzcat(xy, yy, yz), ca.horzcat(xz, yz, zz)
-        )
+        tensor = ca.vertcat(ca.horzcat(xx, xy, xz), ca.horzcat(xy, yy, yz), ca.horzcat(xz, yz, zz))
         turn = ca.horzcat(*self.axes)
         rate, change = ca.mtimes(turn.T, self.rate), ca.mtimes(turn.T, self.change)
         moment = ca.mtimes(tensor, change) + ca.cross(rate, ca.mtimes(tensor, rate))

@@ -78,9 +78,7 @@ def stance(root: Any, p: Any) -> Stance:
     return Stance(centre, turn, list_, tilt, leg)
 
 
-def _list(
-    x: Any, y: Any, turn: Any, square: list[Any], half: Any, apart: Any
-) -> tuple[Any, Any]:
+def _list(x: Any, y: Any, turn: Any, square: list[Any], half: Any, apart: Any) -> tuple[Any, Any]:
     """Height of the hips' middle over the ankles [m] and sine of the pelvis' list.
 
     With P from the ankles' to the hips' middle, e the line of the hips to the left, b its half

@@ -124,9 +124,7 @@ def leg_motion(
         dd_reach = (y * ddy + z * ddz) / reach + reach * inward**2
         whole = x**2 + square
         lean = (reach * dx - x * d_reach) / whole
-        d_lean = (
-            reach * ddx - x * dd_reach - 2.0 * lean * (x * dx + reach * d_reach)
-        ) / whole
+        d_lean = (reach * ddx - x * dd_reach - 2.0 * lean * (x * dx + reach * d_reach)) / whole
         sine, cosine = ca.sin(knee[0]), ca.cos(knee[0])
         slope = thigh * (thigh + shank * cosine) / whole
         d_slope = thigh * shank * sine * (thigh**2 - shank**2) / whole**2

@@ -8,13 +8,11 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.spatial.grid import SpatialGrid
 from lift_predictor.core.spatial.parameters import SPLINED
 from lift_predictor.core.spatial.task import SpatialTask
-
-Array = NDArray[np.float64]
 
 _DENSE: Final = 41
 _ODD: Final = ('pelvis_aside', 'pelvis_turn', 'bending', 'rotation')
@@ -80,9 +78,7 @@ def recorded_starts(task: SpatialTask, grid: SpatialGrid) -> tuple[SpatialStart,
     mass = float(task.bounds.box_mass.mean() if np.ptp(task.bounds.box_mass) == 0.0 else 0.0)
     return (
         SpatialStart('recorded motion', grid.spline.fit(s, motion), mass, task.duration),
-        through(
-            task, grid, (motion[0], motion[_DENSE // 2], motion[-1]), 'smooth step', mass
-        ),
+        through(task, grid, (motion[0], motion[_DENSE // 2], motion[-1]), 'smooth step', mass),
     )
 
 

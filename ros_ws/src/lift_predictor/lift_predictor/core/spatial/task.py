@@ -8,8 +8,8 @@ from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.exceptions import TaskError
 from lift_predictor.core.spatial.frame import StanceFrame
 from lift_predictor.core.spatial.grid import (
@@ -22,8 +22,6 @@ from lift_predictor.core.spatial.grid import (
 )
 from lift_predictor.core.spatial.parameters import DEPENDENT, SIDES, SpatialParameters
 from lift_predictor.core.spatial.person import SpatialPerson
-
-Array = NDArray[np.float64]
 
 SECTOR_MARGIN: Final = float(np.radians(20.0))
 """How far the box may leave the sector of its way to either side (our choice) [rad]."""

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.dense_grid import DENSITY, near_nodes
 from lift_predictor.core.solvers.library import NodeLibrary
 from lift_predictor.core.spatial.evaluation import SpatialLoads, evaluate, sample
@@ -26,15 +26,8 @@ from lift_predictor.core.spatial.grid import (
     SpatialGrid,
     row_slice,
 )
-from lift_predictor.core.spatial.parameters import (
-    DEPENDENT,
-    N_SPLINED,
-    SPHERE_NAMES,
-    STRONG,
-)
+from lift_predictor.core.spatial.parameters import DEPENDENT, N_SPLINED, SPHERE_NAMES, STRONG
 from lift_predictor.core.spatial.task import SpatialTask
-
-Array = NDArray[np.float64]
 
 TOLERANCE: Final[dict[str, float]] = {
     'joint_angle [rad]': 1e-3,

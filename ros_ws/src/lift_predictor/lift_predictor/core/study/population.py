@@ -103,11 +103,7 @@ def _sample(fields: Fields) -> tuple[Subject, ...]:
 
 
 def _person(
-    fields: Fields,
-    pseudonym: str,
-    rng: np.random.Generator,
-    sex: Draw,
-    numbers: dict[str, Draw],
+    fields: Fields, pseudonym: str, rng: np.random.Generator, sex: Draw, numbers: dict[str, Draw]
 ) -> Subject:
     for _ in range(MAX_DRAWS):
         values: dict[str, Any] = {'pseudonym': pseudonym, 'sex': sex(rng)}
@@ -133,7 +129,7 @@ def _draw(fields: Fields, key: str) -> Draw:
         return lambda rng: constant
     if len(entry) != 1:
         raise fields.error(key, f'one distribution is needed, found {entry!r}')
-    (name, values), = entry.items()
+    ((name, values),) = entry.items()
     inner = Fields(fields.source, f'{fields.name}.{key}', entry)
     if name == 'uniform':
         low, high = inner.numbers('uniform', 2)

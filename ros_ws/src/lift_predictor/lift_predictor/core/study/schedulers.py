@@ -129,9 +129,7 @@ class DaskScheduler:
         The scheduler does not answer or has no worker.
     """
 
-    def __init__(
-        self, address: str, timeout: float = 10.0, function: Solve = solve_case
-    ) -> None:
+    def __init__(self, address: str, timeout: float = 10.0, function: Solve = solve_case) -> None:
         self._address, self._function = address, function
         try:
             self._client = _distributed().Client(address, timeout=timeout, set_as_default=False)

@@ -16,13 +16,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from human_model.typing import Array
 from muscle_analyzer.core.exceptions import OpenSimError
 from muscle_analyzer.core.multibody import MultibodyModel
 from muscle_analyzer.core.opensim import setup_files as files
 from muscle_analyzer.core.opensim.motion_on_model import MotionOnModel
 from muscle_analyzer.core.opensim.storage import Storage, read_storage
 
-Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
 #: Instants are one if they are so close [s].

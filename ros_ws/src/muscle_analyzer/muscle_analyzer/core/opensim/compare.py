@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from human_model.typing import Array
 from muscle_analyzer.core.analyzer_options import MuscleAnalyzerOptions
 from muscle_analyzer.core.disc_frame import disc_load
 from muscle_analyzer.core.joint_loads import lumbosacral_body
@@ -31,7 +32,6 @@ from muscle_analyzer.core.opensim.motion_on_model import MotionOnModel
 from muscle_analyzer.core.opensim.own_side import OwnSide
 from muscle_analyzer.core.static_optimization import Criterion
 
-Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
 _TRANSLATIONS = ('_tx', '_ty', '_tz')
@@ -117,11 +117,7 @@ class Comparison:
 
 
 def difference(
-    quantity: str,
-    unit: str,
-    ours: Array,
-    opensim: Array,
-    where: Callable[[tuple[int, ...]], str],
+    quantity: str, unit: str, ours: Array, opensim: Array, where: Callable[[tuple[int, ...]], str]
 ) -> Difference:
     """Compare two arrays of one shape.
 
@@ -284,11 +280,7 @@ def _torque_rows(
 
 
 def _instants(
-    own: OwnSide,
-    rows: Rows,
-    mine: Answer,
-    other: Answer,
-    optima: list[tuple[float, float, Array]],
+    own: OwnSide, rows: Rows, mine: Answer, other: Answer, optima: list[tuple[float, float, Array]]
 ) -> tuple[Instant, ...]:
     """Return the loads of both sides in the disc frame, instant by instant."""
     here = own.motion.model.body_index(lumbosacral_body(own.motion.model))

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from muscle_analyzer.core.exceptions import StorageError
 from muscle_analyzer.core.multibody import MultibodyModel
 from muscle_analyzer.core.opensim import setup_files as files
@@ -23,8 +23,6 @@ from muscle_analyzer.core.opensim.model_writer import write_osim
 from muscle_analyzer.core.opensim.motion_on_model import MotionOnModel
 from muscle_analyzer.core.opensim.storage import Storage, read_storage, write_storage
 from muscle_analyzer.core.reserves import read_reserves
-
-Array = NDArray[np.float64]
 
 #: The set-ups for a whole lift solve one sample in so many; each takes OpenSim seconds.
 SAMPLES_PER_SOLUTION = 10

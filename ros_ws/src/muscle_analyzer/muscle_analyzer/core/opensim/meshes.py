@@ -13,15 +13,13 @@ from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from muscle_analyzer.core.opensim.xml_functions import xyz_angles
 from muscle_analyzer.core.opensim.xml_tree import add_numbers, add_text
 from muscle_analyzer.core.osim_frames import FrameResolver
 from muscle_analyzer.core.osim_model import GROUND, Frame
 from muscle_analyzer.core.osim_xml import OsimXml
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

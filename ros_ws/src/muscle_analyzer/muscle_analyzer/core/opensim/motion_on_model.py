@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from human_model.frames import to_opensim
 from human_model.motion import SIDES, BodyMotion
+from human_model.typing import Array
 from muscle_analyzer.core.block_solver import FEET, HANDS
 from muscle_analyzer.core.exceptions import InputArrayError, TransferError
 from muscle_analyzer.core.inverse_dynamics import add_force
@@ -25,9 +26,6 @@ from muscle_analyzer.core.multibody import MultibodyModel
 from muscle_analyzer.core.opensim.meshes import Mesh, read_meshes, scaled_meshes
 from muscle_analyzer.core.opensim.setup_files import PointForce
 from muscle_analyzer.core.transfer import MotionTransfer
-
-Array = NDArray[np.float64]
-
 
 #: Stamps since 1970 are doubles of 2.4e-7 s; OpenSim writes times with eight decimals.
 TIME_DECIMALS = 6

@@ -14,6 +14,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from human_model.typing import Array
 from muscle_analyzer.core.analyzer_options import MuscleAnalyzerOptions
 from muscle_analyzer.core.disc_frame import disc_option, disc_rotation
 from muscle_analyzer.core.exceptions import OpenSimError
@@ -29,7 +30,6 @@ from muscle_analyzer.core.opensim.motion_on_model import MotionOnModel
 from muscle_analyzer.core.reserves import read_reserves
 from muscle_analyzer.core.static_optimization import Criterion, StaticOptimization
 
-Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
 

@@ -16,12 +16,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
+from human_model.typing import Array
 from muscle_analyzer.core.exceptions import OpenSimError
-
-Array = NDArray[np.float64]
 
 #: Environment variable that names the Python with OpenSim.
 VARIABLE = 'LIFT_OPENSIM_PYTHON'

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Run OpenSim's tools on an exported folder.
+"""Run OpenSim's tools on an exported folder.
 
 A script for the Python that has the `opensim` wheel; it needs nothing of this project, and runs in
 a process of its own because OpenSim and CasADi ship different libraries of one name::
@@ -83,9 +82,7 @@ def solve_apart(opensim: Any, times: list[float], results: Path) -> dict[str, li
     seconds: dict[str, list[float]] = {'static_optimization': [], 'joint_reaction': []}
     places = [results / f'instant_{k}' for k in range(len(times))]
     for at, place in zip(times, places, strict=True):
-        seconds['static_optimization'].append(
-            analyze(opensim, STATIC_OPTIMIZATION, at, at, place)
-        )
+        seconds['static_optimization'].append(analyze(opensim, STATIC_OPTIMIZATION, at, at, place))
         print(f'{at:.3f} s solved', flush=True)
     for name in (FORCES, ACTIVATIONS):
         joined([place / name for place in places], results / name)

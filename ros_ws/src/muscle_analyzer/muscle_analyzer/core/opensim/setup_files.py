@@ -14,9 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement
 
-import numpy as np
-from numpy.typing import NDArray
-
+from human_model.typing import Array
 from muscle_analyzer.core.opensim.xml_tree import (
     add_flag,
     add_numbers,
@@ -26,8 +24,6 @@ from muscle_analyzer.core.opensim.xml_tree import (
     write_document,
 )
 from muscle_analyzer.core.reserves import Reserve
-
-Array = NDArray[np.float64]
 
 #: Files of an export, beside each other in one folder.
 MODEL = 'model.osim'

@@ -14,11 +14,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from muscle_analyzer.core.exceptions import StorageError
-
-Array = NDArray[np.float64]
 
 _TIME = 'time'
 _ROW_KEYS = ('nrows', 'datarows')
@@ -202,9 +200,7 @@ def _read_degrees(path: Path, header: dict[str, str]) -> bool:
 def _read_row(path: Path, number: int, text: str, labels: tuple[str, ...]) -> list[float]:
     cells = text.split()
     if len(cells) != len(labels):
-        raise StorageError(
-            path, f'{len(cells)} values where {len(labels)} belong', line=number
-        )
+        raise StorageError(path, f'{len(cells)} values where {len(labels)} belong', line=number)
     row = []
     for label, cell in zip(labels, cells, strict=True):
         try:

@@ -8,8 +8,8 @@ import math
 from xml.etree.ElementTree import Element
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from muscle_analyzer.core.exceptions import ModelWriteError
 from muscle_analyzer.core.functions import (
     PiecewisePolynomial,
@@ -18,8 +18,6 @@ from muscle_analyzer.core.functions import (
     smooth_step,
 )
 from muscle_analyzer.core.opensim.xml_tree import add_numbers
-
-Array = NDArray[np.float64]
 
 #: Coefficients of a piece.
 _LINE, _QUINTIC = 2, 6

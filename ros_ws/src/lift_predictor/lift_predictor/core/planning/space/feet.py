@@ -7,8 +7,8 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.exceptions import TaskError, UnreachableError
 from lift_predictor.core.planning.feet import Placement
 from lift_predictor.core.planning.plan_task import FARTHEST, NEAREST, PlanTask
@@ -16,8 +16,6 @@ from lift_predictor.core.planning.solve import Listener, PlanProgress, finite_be
 from lift_predictor.core.planning.space.solve import Probe, probe_in_space
 from lift_predictor.core.planning.space.task import Feet
 from lift_predictor.core.predictor import LiftPredictor
-
-Array = NDArray[np.float64]
 
 MIDDLE: Final = 0.5 * (NEAREST + FARTHEST)
 """Distance of the nearer place in the first candidates [m]."""

@@ -15,15 +15,12 @@ from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lift_predictor.core.nearest_lift import NearestLift, closer_lift
 from lift_predictor.core.planning.nearest import ENDS, STANDARD_DISTANCE, STANDARD_HEIGHT
 from lift_predictor.core.planning.plan_task import PlanTask, Point
 from lift_predictor.core.planning.space.task import Feet
 from lift_predictor.core.spatial.prediction import PredictedLift3D
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -112,10 +112,6 @@ def _planned(
 
 def _failed(task: PlanTask, error: Exception) -> PredictedLift3D:
     unreachable = isinstance(error, UnreachableError)
-    status = (
-        SolveStatus.PREDICTOR_UNREACHABLE if unreachable else SolveStatus.PREDICTOR_BAD_INPUT
-    )
+    status = SolveStatus.PREDICTOR_UNREACHABLE if unreachable else SolveStatus.PREDICTOR_BAD_INPUT
     mass = float('nan') if task.box_mass is None else task.box_mass
-    return PredictedLift3D.failed(
-        task.name, mass, task.duration, SolveReport(status, str(error))
-    )
+    return PredictedLift3D.failed(task.name, mass, task.duration, SolveReport(status, str(error)))

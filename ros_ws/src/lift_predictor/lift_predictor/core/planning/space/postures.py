@@ -7,8 +7,8 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.exceptions import UnreachableError
 from lift_predictor.core.least_squares import minimise
 from lift_predictor.core.planning.postures import CLOSE, GUESSES, Posture
@@ -20,8 +20,6 @@ from lift_predictor.core.spatial.evaluation import evaluate, lowering
 from lift_predictor.core.spatial.parameters import DEPENDENT, SPLINED
 from lift_predictor.core.spatial.postures import TURNED
 from lift_predictor.core.spatial.task import SpatialTask
-
-Array = NDArray[np.float64]
 
 RHYTHM: Final = {'lumbar_extension': 0.63, 'thorax_extension': 0.37}
 """Shares of both spine joints in the bending of the trunk: the lumbar rhythm of the lifting
@@ -153,9 +151,7 @@ def first_good(
     if best.unbalanced > CLOSE:
         problems.append('legs or balance leave their limits')
     if best.off_technique > CLOSE and technique is not None:
-        problems.append(
-            f'the hips are {1e3 * best.off_technique:.0f} mm from a {technique.name}'
-        )
+        problems.append(f'the hips are {1e3 * best.off_technique:.0f} mm from a {technique.name}')
     raise UnreachableError(
         f'task.{field}: with the hands at forward {place[0]:.3f} m, left {place[1]:.3f} m, up '
         f'{place[2]:.3f} m from between the ankles, {" and ".join(problems)}'

@@ -58,6 +58,7 @@ class SolvedInSpace:
     binding: tuple[str, ...]
     value: float
 
+
 def solve_in_space(
     predictor: LiftPredictor,
     task: PlanTask,
@@ -194,9 +195,7 @@ def _solved(
     )
 
 
-def first_index(
-    spatial: SpatialPredictor, plan: SpacePlan, prediction: PredictedLift3D
-) -> float:
+def first_index(spatial: SpatialPredictor, plan: SpacePlan, prediction: PredictedLift3D) -> float:
     """Stoop-Squat-Index of the first posture; NaN where C7 is not lowered."""
     hips, c7 = lowering(spatial.library, prediction.control[:1], plan.task.parameters)
     return 100.0 * (1.0 - float(hips[0] / c7[0])) if c7[0] > 0.0 else float('nan')

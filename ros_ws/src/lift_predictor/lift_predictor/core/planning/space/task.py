@@ -7,8 +7,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from human_model.typing import Array
 from lift_predictor.core.exceptions import UnreachableError
 from lift_predictor.core.planning.plan_task import PlanTask
 from lift_predictor.core.planning.postures import HIGH_GUESSES, LOW_GUESSES
@@ -30,8 +30,6 @@ from lift_predictor.core.spatial.task import (
     place_task,
 )
 from lift_predictor.core.spatial.windows import near_posture
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -157,9 +155,7 @@ def _placed(
     return place_task(person, frame, box, duration, spatial.grid, task.name)
 
 
-def _ends(
-    spatial: SpatialPredictor, task: SpatialTask, style: Technique
-) -> tuple[Array, Array]:
+def _ends(spatial: SpatialPredictor, task: SpatialTask, style: Technique) -> tuple[Array, Array]:
     """Postures at both ends; who cannot balance the box is too weak for it, not too short."""
     low, high = (*LOW_GUESSES, *HIGH_GUESSES), (*HIGH_GUESSES, *LOW_GUESSES)
     library = spatial.library
