@@ -16,7 +16,7 @@ MAY_IMPORT = {
     'motion_tracker': {'human_model', 'lifting_node'},
     'lift_predictor': {'human_model', 'lifting_node'},
     'muscle_analyzer': {'human_model', 'lifting_node'},
-    'injury_monitor': {'lifting_node'},
+    'injury_monitor': {'human_model', 'lifting_node'},
     'lifting_visualization': {'human_model', 'lifting_node'},
 }
 ROS = {'rclpy', 'lifting_interfaces', 'lifting_node', 'launch', 'launch_ros'}

@@ -20,6 +20,7 @@ from lifting_interfaces.msg import (
 )
 from lifting_interfaces.msg import RiskAssessment as RiskAssessmentMsg
 
+from human_model.typing import BoolArray
 from injury_monitor.core.alarm_event import AlarmEvent
 from injury_monitor.core.assessment import RiskAssessment
 from injury_monitor.core.exceptions import InvalidInputError
@@ -28,7 +29,7 @@ from injury_monitor.core.lifting_equation import Coupling
 from injury_monitor.core.lifting_geometry import LiftEnd
 from injury_monitor.core.loads import ActivationSeries, TorqueSeries
 from injury_monitor.core.rnle_assessment import LiftEnds
-from injury_monitor.core.validation import BoolArray, FloatArray
+from injury_monitor.core.validation import FloatArray
 from injury_monitor.core.work import Work
 from lifting_node.stamps import to_seconds, to_stamp
 

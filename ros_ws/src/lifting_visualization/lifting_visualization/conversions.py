@@ -15,11 +15,12 @@ from std_msgs.msg import ColorRGBA
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
 
+from human_model.typing import Array
 from lifting_node.conversions import LABORATORY
 from lifting_node.stamps import to_seconds
 from lifting_visualization.core.exceptions import PictureError
 from lifting_visualization.core.link_frames import LinkFrames
-from lifting_visualization.core.shapes import Array, Kind, Shape
+from lifting_visualization.core.shapes import Kind, Shape
 from lifting_visualization.core.spine_loads import SpineLoads
 
 #: Bytes before the body of a serialised message.

@@ -18,8 +18,9 @@ from statistics import median
 
 import numpy as np
 
+from human_model.typing import BoolArray
 from injury_monitor.core.exceptions import InvalidInputError
-from injury_monitor.core.validation import BoolArray, FloatArray, array, positive
+from injury_monitor.core.validation import FloatArray, array, positive
 
 DEFAULT_WINDOW = 0.5
 DEFAULT_MAX_GAP = 0.1

@@ -7,9 +7,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
+from human_model.typing import BoolArray
 from injury_monitor.core.loads import ActivationSeries, LiftLoads, TorqueSeries
 from injury_monitor.core.rnle_assessment import LiftEnds
-from injury_monitor.core.validation import BoolArray, FloatArray, positive
+from injury_monitor.core.validation import FloatArray, positive
 
 MEASURED = 'measured'
 PREDICTED = 'predicted'

@@ -10,8 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from human_model.typing import BoolArray
 from injury_monitor.core.exceptions import InvalidInputError
-from injury_monitor.core.validation import BoolArray, FloatArray, all_finite, array
+from injury_monitor.core.validation import FloatArray, all_finite, array
 
 
 def _series(owner: object, time: FloatArray, solved: BoolArray) -> None:

@@ -9,11 +9,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from human_model.typing import Array
 from lifting_bringup.bags import conventions
 from lifting_bringup.bags.exceptions import ConventionError
 from lifting_bringup.bags.marker_roles import MarkerRoles
 from lifting_bringup.bags.plate_assignment import assign_plates, orient_plates
-from lifting_bringup.bags.recording import SIDES, Array, Plate, RawRecording, Recording
+from lifting_bringup.bags.recording import SIDES, Plate, RawRecording, Recording
 
 # Standard gravity [m/s^2], CGPM 1901.
 GRAVITY = 9.80665

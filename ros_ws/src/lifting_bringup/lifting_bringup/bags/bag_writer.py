@@ -28,9 +28,9 @@ from rosbags.interfaces import (
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 from rosbags.rosbag2.errors import WriterError
 
+from human_model.typing import Array
 from lifting_bringup.bags.exceptions import BagError
 from lifting_bringup.bags.message_types import typestore
-from lifting_bringup.bags.recording import Array
 
 WORLD = 'world'
 # A recording carries no date: its stamps count from here [ns], so that no stamp is zero, which

@@ -9,8 +9,8 @@ from collections.abc import Mapping
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from human_model.typing import Array
 from lifting_bringup.bags.exceptions import ConventionError
-from lifting_bringup.bags.recording import Array
 
 _NEEDED = 3
 

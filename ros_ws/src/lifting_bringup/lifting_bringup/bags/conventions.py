@@ -10,10 +10,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from human_model.typing import Array
 from lifting_bringup.bags.exceptions import ConventionError
 from lifting_bringup.bags.marker_roles import MarkerRoles
 from lifting_bringup.bags.plate_assignment import LOADED
-from lifting_bringup.bags.recording import SIDES, Array, Plate
+from lifting_bringup.bags.recording import SIDES, Plate
 
 UNIT_METRES = {'m': 1.0, 'mm': 1e-3, 'cm': 1e-2}
 AXES = {

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from human_model.typing import Array
 from lifting_bringup.bags.alignment import ConventionOptions, align
 from lifting_bringup.bags.bag_writer import START_TIME_NS, BagWriter, in_order
 from lifting_bringup.bags.box_pose import box_poses
@@ -23,7 +24,7 @@ from lifting_bringup.bags.c3d_files import read_c3d
 from lifting_bringup.bags.exceptions import BagError, FileFormatError, SubjectFileError
 from lifting_bringup.bags.messages import MarkerCalibration, subject_message, task_message
 from lifting_bringup.bags.opensim_forces import read_trc_and_forces
-from lifting_bringup.bags.recording import SIDES, Analog, Array, Plate, RawRecording, Recording
+from lifting_bringup.bags.recording import SIDES, Analog, Plate, RawRecording, Recording
 from lifting_bringup.bags.static_trial import calibrate_markers
 from lifting_bringup.bags.subject_file import (
     QUIET_STANDING,

@@ -14,8 +14,8 @@ from pathlib import Path
 
 import numpy as np
 
+from human_model.typing import Array
 from lifting_bringup.bags.exceptions import ConventionError
-from lifting_bringup.bags.recording import Array
 
 ROLES = ('pelvis_front', 'pelvis_back', 'heel', 'toe', 'trunk')
 

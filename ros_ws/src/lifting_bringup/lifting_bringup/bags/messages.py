@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from human_model.typing import Array
 from lifting_bringup.bags.bag_writer import BagWriter
-from lifting_bringup.bags.recording import Array
 from lifting_bringup.bags.subject_file import SubjectEntry, TaskEntry
 
 

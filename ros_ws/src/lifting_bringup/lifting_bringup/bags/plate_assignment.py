@@ -6,9 +6,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from human_model.typing import Array
 from lifting_bringup.bags.exceptions import ConventionError
 from lifting_bringup.bags.marker_roles import MarkerRoles
-from lifting_bringup.bags.recording import SIDES, Array, Plate, centre_of_pressure
+from lifting_bringup.bags.recording import SIDES, Plate, centre_of_pressure
 
 # Below this a plate is taken as unloaded [N]; the COP of a light load is dominated by noise.
 LOADED = 50.0

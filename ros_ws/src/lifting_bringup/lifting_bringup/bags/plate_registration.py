@@ -23,9 +23,10 @@ import numpy.typing as npt
 from human_model.errors import HumanModelError
 from human_model.skeleton_3d import Skeleton3D
 from human_model.subject import Calibration, Subject
+from human_model.typing import Array
 from lifting_bringup.bags.exceptions import ConventionError
 from lifting_bringup.bags.messages import MarkerCalibration
-from lifting_bringup.bags.recording import SIDES, Array, Plate, Recording, centre_of_pressure
+from lifting_bringup.bags.recording import SIDES, Plate, Recording, centre_of_pressure
 from lifting_bringup.bags.static_trial import person
 from lifting_bringup.bags.subject_file import QUIET_STANDING, SubjectFile
 from motion_tracker.core.errors import MotionTrackerError

@@ -10,9 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from human_model.typing import Array
 from lifting_bringup.bags.exceptions import UnreadableBagError
 from lifting_bringup.bags.reader import BagLoss, BagReader
-from lifting_bringup.bags.recording import SIDES, Array, Plate
+from lifting_bringup.bags.recording import SIDES, Plate
 
 _LATCHED = ('subject', 'task')
 

@@ -9,16 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from human_model.typing import Array
 from injury_monitor.core.limits import read_limits
 from lifting_bringup.report.curves import percent
-from lifting_bringup.report.data import (
-    Activations,
-    Array,
-    Header,
-    LiftReport,
-    Missing,
-    SpineCurves,
-)
+from lifting_bringup.report.data import Activations, Header, LiftReport, Missing, SpineCurves
 from lifting_bringup.report.lift_section import CRITERIA
 from lifting_bringup.report.loads import LimitLine, MuscleGroup
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
+from human_model.typing import Array
 from lifting_bringup.report.compared import (
     COMPONENTS,
     SIDES,
@@ -22,7 +23,7 @@ from lifting_bringup.report.compared import (
     peak,
 )
 from lifting_bringup.report.curves import percent
-from lifting_bringup.report.data import Array, Missing
+from lifting_bringup.report.data import Missing
 from lifting_bringup.report.loads import LimitLine, muscle_groups
 from lifting_bringup.report.style import (
     HAZARD,

@@ -8,8 +8,9 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from human_model.strength import LARGE
+from human_model.typing import Array
 from injury_monitor.core.torque_index import torque_index
-from lifting_bringup.report.data import JOINTS, Array, GroundForces, JointAngles, Pair, Torques
+from lifting_bringup.report.data import JOINTS, GroundForces, JointAngles, Pair, Torques
 from lifting_bringup.report.style import (
     COLOURS,
     DASHES,

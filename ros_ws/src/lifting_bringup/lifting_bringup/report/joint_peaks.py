@@ -7,7 +7,8 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
-from lifting_bringup.report.data import Array, JointLoads, Pair
+from human_model.typing import Array
+from lifting_bringup.report.data import JointLoads, Pair
 from lifting_bringup.report.style import (
     COLOURS,
     LABELS,

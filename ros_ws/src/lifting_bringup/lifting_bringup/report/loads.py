@@ -12,8 +12,9 @@ from importlib import resources
 import numpy as np
 from matplotlib.axes import Axes
 
+from human_model.typing import Array
 from lifting_bringup.report.curves import percent
-from lifting_bringup.report.data import Activations, Array, Pair, SpineCurves
+from lifting_bringup.report.data import Activations, Pair, SpineCurves
 from lifting_bringup.report.exceptions import ReportError
 from lifting_bringup.report.style import (
     COLOURS,

@@ -8,7 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle, Rectangle
 
-from lifting_bringup.report.data import Array, BodyPoints, Pair
+from human_model.typing import Array
+from lifting_bringup.report.data import BodyPoints, Pair
 from lifting_bringup.report.style import (
     BOX,
     COLOURS,

@@ -10,8 +10,9 @@ from functools import cache
 import numpy as np
 import numpy.typing as npt
 
+from human_model.typing import Array
 from lifting_visualization.core.exceptions import PictureError
-from lifting_visualization.core.shapes import Array, Kind, Shape, nothing
+from lifting_visualization.core.shapes import Kind, Shape, nothing
 from lifting_visualization.core.tables import Colour, bones, colours
 
 BONE, JOINT, SHAFT = 0.035, 0.05, 0.025

@@ -7,9 +7,10 @@ from __future__ import annotations
 import numpy as np
 
 from human_model.motion import BodyMotion
+from human_model.typing import Array
 from lifting_visualization.core import drawing
 from lifting_visualization.core.drawing import SpineScale
-from lifting_visualization.core.shapes import Array, Shape, nothing
+from lifting_visualization.core.shapes import Shape, nothing
 from lifting_visualization.core.spine_loads import SpineLoads
 from lifting_visualization.core.tables import colours
 

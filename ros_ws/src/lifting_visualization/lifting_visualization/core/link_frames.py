@@ -12,9 +12,9 @@ import numpy as np
 
 from human_model.skeleton import Skeleton
 from human_model.tree import PRISMATIC
+from human_model.typing import Array
 from human_model.urdf import WORLD, body_names, fixed_segments
 from lifting_visualization.core.exceptions import PictureError
-from lifting_visualization.core.shapes import Array
 
 
 class LinkFrames:

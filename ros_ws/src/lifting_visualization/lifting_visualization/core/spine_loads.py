@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lifting_visualization.core.shapes import Array
+from human_model.typing import Array
 
 
 class SpineLoads(NamedTuple):

@@ -12,12 +12,13 @@ import numpy.typing as npt
 from human_model.motion import BodyMotion, Lift
 from human_model.skeleton_3d import Skeleton3D
 from human_model.subject import Subject
+from human_model.typing import Array
 from human_model.urdf import person_urdf
 from lifting_visualization.core import drawing
 from lifting_visualization.core.drawing import SpineScale
 from lifting_visualization.core.ghost import Ghost, grips, no_ghost
 from lifting_visualization.core.link_frames import LinkFrames
-from lifting_visualization.core.shapes import Array, Shape, nothing
+from lifting_visualization.core.shapes import Shape, nothing
 from lifting_visualization.core.spine_loads import SpineLoads
 from lifting_visualization.core.tables import colours
 
