@@ -106,6 +106,12 @@ def lift(skeleton, solver, crouch, person):
     return markers, box, wrench
 
 
+@pytest.fixture(scope='session')
+def sides(lift):
+    """Return the right and left plate as streams of their own."""
+    return tuple([m for m in lift[2] if m[0] == side] for side in ('right', 'left'))
+
+
 def read_trc(path):
     """Return names, time [s] and positions in REP-103 axes [m] of a file in metres, y up."""
     lines = path.read_text(encoding='utf-8').splitlines()

@@ -66,12 +66,6 @@ def tracker(person, marker_set):
 
 
 @pytest.fixture(scope='module')
-def sides(lift):
-    """Right and left plate as streams of their own."""
-    return tuple([m for m in lift[2] if m[0] == side] for side in ('right', 'left'))
-
-
-@pytest.fixture(scope='module')
 def outputs(lift, person, marker_set, solver):
     return feed(MotionTracker(person, marker_set, MASS, SIZE), in_order(*lift), solver.model.names)
 
@@ -319,93 +313,6 @@ def test_filters_settle_where_a_recording_begins_in_motion(
     up = skeleton.coordinates.index('pelvis_ty')
     good = [f.motion.velocity[0, up] for f in frames[48:]]
     assert good == pytest.approx([speed] * len(good), abs=0.02)
-
-
-class Clock:
-    """A clock that is set by hand."""
-
-    def __init__(self):
-        self.time = 100.0
-
-    def __call__(self):
-        return self.time
-
-
-def pushed(tracker, markers, names, clock, rate):
-    """Feed marker frames at a rate times real time; return what came out of each."""
-    outputs = []
-    for _, stamp, positions in markers:
-        clock.time += 0.01 / rate
-        outputs.append(tracker.push_markers(stamp, names, positions))
-    return outputs
-
-
-@pytest.mark.parametrize(('rate', 'frames'), [(0.25, 50), (1.0, 200), (10.0, None)])
-def test_a_plate_that_never_comes_is_given_up_by_the_clock(
-    marker_set, lift, solver, person, rate, frames
-):
-    clock = Clock()
-    tracker = MotionTracker(person, marker_set, clock=clock)
-    outputs = pushed(tracker, lift[0], solver.model.names, clock, rate)
-    first = next((i for i, some in enumerate(outputs) if of(TrackedFrame, some)), None)
-    if frames is None:
-        assert first is None
-        return
-    assert first == pytest.approx(frames, abs=1)
-    said = [n.text for n in of(Notice, outputs[first])]
-    assert said == [
-        f'{side} plate: no samples at all at {START:.3f} s; going on without'
-        for side in ('right', 'left')
-    ]
-
-
-def test_a_late_plate_is_waited_for_at_ten_times_real_time_and_through_a_pause(
-    marker_set, lift, sides, solver, person
-):
-    """The left plate comes 2.5 s of stamps late, 0.25 s by the clock, and after a pause."""
-    clock = Clock()
-    names = solver.model.names
-    tracker = MotionTracker(person, marker_set, clock=clock)
-    outputs = []
-    late = list(sides[1])
-    for _, stamp, positions in lift[0]:
-        clock.time += 0.001 if stamp != lift[0][20][1] else 30.0
-        while late and late[0][1] < stamp - 2.5:
-            outputs += tracker.push_wrench(*late.pop(0))
-        outputs += tracker.push_markers(stamp, names, positions)
-    for sample in [*late, *sides[0]]:
-        outputs += tracker.push_wrench(*sample)
-    outputs += tracker.flush()
-    assert not [n for n in of(Notice, outputs) if 'going on without' in n.text]
-    reference = feed(MotionTracker(person, marker_set), in_order(lift[0], *sides), names)
-    for one, other in zip(of(TrackedFrame, outputs), of(TrackedFrame, reference), strict=True):
-        assert np.array_equal(one.motion.ground_force, other.motion.ground_force)
-        assert one.status is other.status
-
-
-def test_giving_up_early_or_at_the_end_gives_the_same(marker_set, lift, sides, solver, person):
-    """Online by the clock, or a file without one: the left plate and the box fall silent."""
-    clock = Clock()
-    names = solver.model.names
-    plates = [*sides[0], *(m for m in sides[1] if m[1] < START + 0.6)]
-    box = [m for m in lift[1] if m[1] < START + 0.5]
-    live = MotionTracker(person, marker_set, MASS, SIZE, clock=clock)
-    outputs = []
-    for message in in_order(lift[0], plates, box):
-        clock.time = message[1]
-        outputs += feed_one(live, message, names)
-    before_end = len(of(TrackedFrame, outputs))
-    outputs += live.flush()
-    reference = feed(
-        MotionTracker(person, marker_set, MASS, SIZE), in_order(lift[0], plates, box), names
-    )
-    assert before_end > 200
-    assert [(e.lift_id, e.event.time, e.detected_from) for e in of(DetectedEvent, outputs)] == [
-        (e.lift_id, e.event.time, e.detected_from) for e in of(DetectedEvent, reference)
-    ]
-    for one, other in zip(of(TrackedFrame, outputs), of(TrackedFrame, reference), strict=True):
-        assert np.array_equal(one.motion.ground_force, other.motion.ground_force)
-        assert one.status is other.status
 
 
 def test_several_recordings_count_on(person, marker_set, lift, solver):
