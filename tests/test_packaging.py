@@ -8,6 +8,7 @@ import ast
 import os
 import re
 import sys
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
@@ -16,6 +17,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 SOURCES = ROOT / 'ros_ws' / 'src'
+PROJECT = tomllib.loads((ROOT / 'pyproject.toml').read_text())['project']
 PACKAGES = sorted(path.parent for path in SOURCES.glob('*/package.xml'))
 PYTHON_PACKAGES = sorted(path.parent for path in SOURCES.glob('*/setup.py'))
 OWN = {path.name for path in PACKAGES}
@@ -53,6 +55,19 @@ ROSDEP_KEYS = {
     'rosbags': 'python3-rosbags-pip',
     'scipy': 'python3-scipy',
     'yaml': 'python3-yaml',
+}
+# Imported module -> wheel, where the names differ. lz4 and backports.zstd come with rosbags.
+WHEELS = {'backports': 'rosbags', 'lz4': 'rosbags', 'yaml': 'pyyaml'}
+# Of the extra `ros`, or of a ROS 2 installation; beside the packages of messages.
+FROM_ROS = {
+    'ament_index_python',
+    'builtin_interfaces',
+    'launch',
+    'launch_ros',
+    'rcl_interfaces',
+    'rclpy',
+    'rosidl_parser',
+    'std_srvs',
 }
 # Only on PyPI and without a rosdep key; the README says how to install them.
 WITHOUT_ROSDEP_KEY = {'casadi', 'distributed', 'ezc3d', 'pyarrow'}
@@ -141,7 +156,7 @@ def test_manifest_is_complete(package: Path) -> None:
     assert root.get('format') == '3'
     assert field(root, 'name') == package.name
     assert field(root, 'license') == 'Apache-2.0'
-    assert field(root, 'version') == '0.1.0'
+    assert field(root, 'version') == PROJECT['version']
     assert len(field(root, 'description')) > 40
     assert (package / 'README.md').stat().st_size > 200
 
@@ -184,6 +199,18 @@ def test_manifest_names_what_is_imported(package: Path) -> None:
     if package.name == 'lifting_bringup':
         unused -= STARTED_BY_BRINGUP
     assert not unused, f'package.xml names {sorted(unused)}, which nothing imports'
+
+
+def test_wheel_requires_what_is_imported() -> None:
+    """The dependencies of the wheel are those of the environment, and cover the imports."""
+    extras = PROJECT['optional-dependencies']
+    required = {*PROJECT['dependencies'], *(name for extra in extras.values() for name in extra)}
+    lines = (ROOT / 'requirements' / 'runtime.in').read_text().splitlines()
+    assert required == {line for line in lines if not line.startswith('#')}
+    imported = set().union(*map(imported_modules, PYTHON_PACKAGES)) - OWN - FROM_ROS
+    imported = {module for module in imported if not module.endswith('_msgs')}
+    wheels = {WHEELS.get(module, module) for module in imported}
+    assert wheels <= required, f'pyproject.toml lacks {sorted(wheels - required)}'
 
 
 def test_interface_dependencies_are_those_used() -> None:

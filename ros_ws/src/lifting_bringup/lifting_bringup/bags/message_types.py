@@ -16,16 +16,20 @@ _PACKAGE = 'lifting_interfaces'
 
 
 def interface_folder() -> Path:
-    """Return the folder of lifting_interfaces' .msg files, installed or beside this package.
+    """Return the folder of lifting_interfaces' .msg files.
+
+    It is in the wheel, beside this package in a checkout, or in the ament index.
 
     Raises
     ------
     MessageTypeError
-        Found in neither place.
+        Found in none of them.
     """
-    beside = Path(__file__).resolve().parents[3] / _PACKAGE / 'msg'
-    if beside.is_dir():
-        return beside
+    here = Path(__file__).resolve()
+    beside = here.parents[3] / _PACKAGE / 'msg'
+    for place in (here.with_name('interfaces'), beside):
+        if place.is_dir():
+            return place
     try:
         from ament_index_python.packages import PackageNotFoundError, get_package_share_directory
     except ModuleNotFoundError as error:
