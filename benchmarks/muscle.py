@@ -23,8 +23,8 @@ from benchmarks.muscle_opensim import OPTIONS, Referee, referee, seconds_a_frame
 
 from human_model.typing import Array
 from muscle_analyzer.core.exceptions import OpenSimError
-from muscle_analyzer.core.load_solver import LoadSolver
-from muscle_analyzer.core.opensim.process import OpenSimPython, find_opensim
+from muscle_analyzer.core.loads.load_solver import LoadSolver
+from muscle_analyzer.core.opensim_bridge.process import OpenSimPython, find_opensim
 
 ROUNDS: Final = 10
 """How often a motion is computed; the first time, which loads compiled functions, is not timed."""

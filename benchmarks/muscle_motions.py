@@ -17,14 +17,14 @@ from typing import Final
 import numpy as np
 
 from lifting_bringup.recorded_lifts import recorded_lifts
-from muscle_analyzer.core.analyzer import MuscleAnalyzer
-from muscle_analyzer.core.motion_derivatives import smooth
-from muscle_analyzer.core.multibody import compile_model
-from muscle_analyzer.core.opensim.export import read_coordinates
-from muscle_analyzer.core.opensim.motion_on_model import MotionOnModel, motion_on_model
-from muscle_analyzer.core.opensim.setup_files import PointForce
-from muscle_analyzer.core.opensim.storage import read_storage
-from muscle_analyzer.core.osim_reader import read_osim
+from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
+from muscle_analyzer.core.multibody.model import compile_model
+from muscle_analyzer.core.opensim_bridge.derivatives import smooth
+from muscle_analyzer.core.opensim_bridge.export import read_coordinates
+from muscle_analyzer.core.opensim_bridge.motion_on_model import MotionOnModel, motion_on_model
+from muscle_analyzer.core.opensim_bridge.setup_files import PointForce
+from muscle_analyzer.core.opensim_bridge.storage import read_storage
+from muscle_analyzer.core.osim.reader import read_osim
 
 ROOT: Final = Path(__file__).resolve().parents[1]
 SQUATS: Final = ROOT.parent / 'shared' / 'data' / 'squats_bodyweight'

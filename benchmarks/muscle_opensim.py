@@ -21,15 +21,15 @@ from benchmarks.muscle_motions import BenchMotion
 from numpy.typing import NDArray
 
 from human_model.typing import Array
-from muscle_analyzer.core.analyzer_options import MuscleAnalyzerOptions
-from muscle_analyzer.core.joint_loads import lumbosacral_body
-from muscle_analyzer.core.opensim import setup_files as files
-from muscle_analyzer.core.opensim.answers import OpenSimRun, read_opensim
-from muscle_analyzer.core.opensim.compare import Comparison, compare
-from muscle_analyzer.core.opensim.export import ExportOptions, export_motion
-from muscle_analyzer.core.opensim.motion_on_model import MotionOnModel
-from muscle_analyzer.core.opensim.own_side import OwnSide
-from muscle_analyzer.core.opensim.process import OpenSimPython, run_referee
+from muscle_analyzer.core.loads.joint_loads import lumbosacral_body
+from muscle_analyzer.core.loads.options import MuscleAnalyzerOptions
+from muscle_analyzer.core.opensim_bridge import setup_files as files
+from muscle_analyzer.core.opensim_bridge.compare import Comparison, compare
+from muscle_analyzer.core.opensim_bridge.export import ExportOptions, export_motion
+from muscle_analyzer.core.opensim_bridge.motion_on_model import MotionOnModel
+from muscle_analyzer.core.opensim_bridge.own_results import OwnSide
+from muscle_analyzer.core.opensim_bridge.process import OpenSimPython, run_referee
+from muscle_analyzer.core.opensim_bridge.results import OpenSimRun, read_opensim
 
 OPTIONS: Final = MuscleAnalyzerOptions(force_length_velocity=True)
 COMPARED: Final = 7

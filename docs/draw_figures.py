@@ -20,7 +20,12 @@ from matplotlib.figure import Figure
 from lifting_bringup.bags.importer import ImportOptions, import_recording
 from lifting_bringup.bags.reader import BagReader
 from lifting_bringup.offline import run_offline
-from muscle_analyzer.core.disc_frame import DiscOption, disc_load, disc_parameters, disc_rotation
+from muscle_analyzer.core.loads.disc_frame import (
+    DiscOption,
+    disc_load,
+    disc_parameters,
+    disc_rotation,
+)
 
 ROOT = Path(__file__).resolve().parents[1]
 FIGURES = Path(__file__).parent / 'figures'

@@ -32,7 +32,7 @@ from lift_predictor.core.spatial.prediction import PredictedLift3D
 from lift_predictor.core.spatial.task import SpatialTask
 from lifting_bringup.bags.reader import BagReader
 from lifting_bringup.recorded_lifts import recorded_lifts
-from muscle_analyzer.core.analyzer import MuscleAnalyzer
+from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
 
 BAGS: Final = ('symmetric_7kg', 'symmetric_12kg', 'asymmetric_7kg')
 RECORDED: Final = 'recorded postures'

@@ -21,7 +21,7 @@ from lifting_bringup.offline import run_offline
 from lifting_bringup.report.compared import peak
 from lifting_bringup.report.data import SpineCurves
 from lifting_bringup.results_file import Results, read_results, seconds
-from muscle_analyzer.core.disc_frame import DiscOption, disc_parameters
+from muscle_analyzer.core.loads.disc_frame import DiscOption, disc_parameters
 
 DOCS = Path(__file__).parent
 ROOT = DOCS.parent

@@ -9,7 +9,12 @@ import numpy as np
 import pytest
 
 from human_model.frames import to_opensim
-from muscle_analyzer.core.disc_frame import DiscOption, disc_load, disc_parameters, disc_rotation
+from muscle_analyzer.core.loads.disc_frame import (
+    DiscOption,
+    disc_load,
+    disc_parameters,
+    disc_rotation,
+)
 
 README = Path(__file__).parents[1] / 'ros_ws/src/lifting_interfaces/README.md'
 

@@ -15,7 +15,7 @@ from human_model.frames import matrix_from_quaternion
 from human_model.skeleton_3d import Skeleton3D
 from lifting_bringup.bags.importer import ImportOptions, import_recording
 from motion_tracker.core.filters import derivatives, zero_phase
-from muscle_analyzer.core.analyzer import MuscleAnalyzer
+from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
 
 #: Agreed limits.
 MARKER_LIMIT = 15e-3

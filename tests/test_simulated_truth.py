@@ -9,9 +9,9 @@ import pytest
 
 from human_model.skeleton import ExternalForce
 from human_model.skeleton_3d import Skeleton3D
-from muscle_analyzer.core.analyzer import MuscleAnalyzer
-from muscle_analyzer.core.analyzer_options import MuscleAnalyzerOptions
-from muscle_analyzer.core.segment_masses import MassDistribution
+from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
+from muscle_analyzer.core.loads.options import MuscleAnalyzerOptions
+from muscle_analyzer.core.subject.segment_masses import MassDistribution
 
 LIFTS = ('symmetric_7kg', 'symmetric_12kg', 'symmetric_max', 'asymmetric_7kg')
 #: Agreed accuracy of the tracker.

@@ -16,10 +16,10 @@ from lifting_bringup.graph_errors import SessionError
 from lifting_bringup.recorded_emg import recorded_emg
 from lifting_bringup.recorded_lifts import recorded_lifts
 from lifting_bringup.report.emg_page import build_emg_page
-from muscle_analyzer.core.analyzer import MuscleAnalyzer
-from muscle_analyzer.core.emg import OWN_MAXIMUM, normalised_envelopes
-from muscle_analyzer.core.emg_comparison import EmgMatch, compare_emg
+from muscle_analyzer.core.emg.comparison import EmgMatch, compare_emg
+from muscle_analyzer.core.emg.envelopes import OWN_MAXIMUM, normalised_envelopes
 from muscle_analyzer.core.exceptions import MuscleAnalyzerError
+from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
 
 NUMBERS, PAGE = 'emg.json', 'emg.html'
 

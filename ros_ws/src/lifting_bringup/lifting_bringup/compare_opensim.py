@@ -15,17 +15,20 @@ import numpy as np
 from human_model.errors import HumanModelError
 from lifting_bringup.graph_errors import SessionError
 from lifting_bringup.recorded_lifts import recorded_lifts
-from muscle_analyzer.core.analyzer import MuscleAnalyzer
-from muscle_analyzer.core.analyzer_options import MuscleAnalyzerOptions
 from muscle_analyzer.core.exceptions import MuscleAnalyzerError
-from muscle_analyzer.core.opensim.answers import read_opensim
-from muscle_analyzer.core.opensim.compare import DIFFERENT_PROBLEM, Comparison, compare
-from muscle_analyzer.core.opensim.export import ExportOptions, export_motion
-from muscle_analyzer.core.opensim.motion_on_model import motion_on_model
-from muscle_analyzer.core.opensim.own_side import OwnSide
-from muscle_analyzer.core.opensim.process import find_opensim, run_referee
-from muscle_analyzer.core.opensim.setup_files import RESULTS
-from muscle_analyzer.core.static_optimization import Criterion, StaticOptimizationOptions
+from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
+from muscle_analyzer.core.loads.options import MuscleAnalyzerOptions
+from muscle_analyzer.core.opensim_bridge.compare import DIFFERENT_PROBLEM, Comparison, compare
+from muscle_analyzer.core.opensim_bridge.export import ExportOptions, export_motion
+from muscle_analyzer.core.opensim_bridge.motion_on_model import motion_on_model
+from muscle_analyzer.core.opensim_bridge.own_results import OwnSide
+from muscle_analyzer.core.opensim_bridge.process import find_opensim, run_referee
+from muscle_analyzer.core.opensim_bridge.results import read_opensim
+from muscle_analyzer.core.opensim_bridge.setup_files import RESULTS
+from muscle_analyzer.core.recruitment.static_optimization import (
+    Criterion,
+    StaticOptimizationOptions,
+)
 
 #: So many instants, evenly over the lift, if none are asked for.
 DEFAULT_INSTANTS = 5

@@ -40,8 +40,8 @@ from motion_tracker.core.configuration import tracker_from
 from motion_tracker.core.errors import MotionTrackerError
 from motion_tracker.core.tracker import MotionTracker
 from muscle_analyzer import conversions as muscle_messages
-from muscle_analyzer.core.analyzer import MuscleAnalyzer
 from muscle_analyzer.core.exceptions import MuscleAnalyzerError
+from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
 
 INPUT_ERRORS = (
     MotionTrackerError,

@@ -24,7 +24,7 @@ from lifting_bringup.results_writer import ResultsWriter
 from lifting_node.conversions import subject_to_msg
 from lifting_node.stamps import to_stamp
 from muscle_analyzer import conversions as muscle_messages
-from muscle_analyzer.core.analyzer import MuscleAnalyzer
+from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
 
 STATION = 'planned'
 _COUPLINGS = {

@@ -13,8 +13,8 @@ import numpy as np
 from lifting_bringup.bags.exceptions import UnreadableBagError
 from lifting_bringup.bags.reader import BagReader
 from lifting_bringup.report.data import Activations, EmgFindings, Missing
-from muscle_analyzer.core.emg import EmgRecording, normalised_envelopes
-from muscle_analyzer.core.emg_comparison import LiftActivations, match_envelopes, muscle_of_channel
+from muscle_analyzer.core.emg.comparison import LiftActivations, match_envelopes, muscle_of_channel
+from muscle_analyzer.core.emg.envelopes import EmgRecording, normalised_envelopes
 from muscle_analyzer.core.exceptions import EmgError
 
 TOPIC = 'emg'

@@ -44,7 +44,7 @@ from lifting_bringup.results_file import (
     seconds,
 )
 from lifting_node.conversions import subject_from_msg
-from muscle_analyzer.core.emg import EmgRecording
+from muscle_analyzer.core.emg.envelopes import EmgRecording
 
 #: Stages whose solve reports are shown: name, topic, source.
 _STAGES = (

@@ -14,7 +14,7 @@ from lifting_bringup.bags.exceptions import BagError, FileFormatError, SubjectFi
 from lifting_bringup.bags.importer import ImportOptions, import_recording
 from lifting_bringup.bags.opensim_files import MarkerTable, write_trc
 from lifting_bringup.bags.reader import BagReader
-from muscle_analyzer.core.opensim.storage import Storage, write_storage
+from muscle_analyzer.core.opensim_bridge.storage import Storage, write_storage
 
 ROOT = Path(__file__).resolve().parents[4]
 SQUATS = ROOT.parent / 'shared' / 'data' / 'squats_bodyweight'

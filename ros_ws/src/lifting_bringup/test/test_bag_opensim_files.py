@@ -13,7 +13,7 @@ from hypothesis.extra.numpy import arrays
 from lifting_bringup.bags.exceptions import FileFormatError
 from lifting_bringup.bags.opensim_files import MarkerTable, read_storage, read_trc, write_trc
 from lifting_bringup.bags.opensim_forces import plates_from_storage
-from muscle_analyzer.core.opensim.storage import Storage, write_storage
+from muscle_analyzer.core.opensim_bridge.storage import Storage, write_storage
 
 NAMES = ('C7', 'R.Heel', 'L toe')
 

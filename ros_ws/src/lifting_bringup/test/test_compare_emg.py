@@ -18,7 +18,7 @@ from lifting_bringup.cli import main
 from lifting_bringup.recorded_emg import emg_of_lift, recorded_emg
 from lifting_bringup.recorded_lifts import recorded_lifts
 from lifting_bringup.report.data import Activations, Missing
-from muscle_analyzer.core.analyzer import MuscleAnalyzer
+from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
 
 BAG = Path(__file__).resolve().parents[4] / 'bags' / 'symmetric_7kg'
 RATE = 1000.0

@@ -15,10 +15,10 @@ from lifting_bringup.compare_opensim import CompareOptions, compare_opensim, tab
 from lifting_bringup.graph_errors import SessionError
 from lifting_bringup.recorded_lifts import recorded_lifts
 from muscle_analyzer.core.exceptions import OpenSimError
-from muscle_analyzer.core.opensim import setup_files as files
-from muscle_analyzer.core.opensim.compare import Comparison, Difference, Instant
-from muscle_analyzer.core.opensim.process import find_opensim
-from muscle_analyzer.core.opensim.storage import read_storage
+from muscle_analyzer.core.opensim_bridge import setup_files as files
+from muscle_analyzer.core.opensim_bridge.compare import Comparison, Difference, Instant
+from muscle_analyzer.core.opensim_bridge.process import find_opensim
+from muscle_analyzer.core.opensim_bridge.storage import read_storage
 
 BAG = Path(__file__).resolve().parents[4] / 'bags' / 'symmetric_7kg'
 

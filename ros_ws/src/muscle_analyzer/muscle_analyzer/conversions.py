@@ -23,8 +23,8 @@ from human_model.report import SolveStatus
 from lifting_node.conversions import motion_from_msg, quality_from_msg, subject_from_msg
 from lifting_node.message_writer import MessageWriter
 from lifting_node.stamps import split
-from muscle_analyzer.core.muscle_analysis import MuscleAnalysis
-from muscle_analyzer.core.torque_limits import JointTorques
+from muscle_analyzer.core.loads.analysis import MuscleAnalysis
+from muscle_analyzer.core.loads.torque_limits import JointTorques
 
 __all__ = [
     'WRITERS',

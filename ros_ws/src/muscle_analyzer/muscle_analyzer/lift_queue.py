@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from human_model.motion import BodyMotion
-from muscle_analyzer.core.analyzer import MuscleAnalyzer
-from muscle_analyzer.core.muscle_analysis import JoinedParts, MuscleAnalysis
+from muscle_analyzer.core.loads.analysis import JoinedParts, MuscleAnalysis
+from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
 
 SAMPLES: Final = 2
 """Samples that are analysed in one step: together they take hardly longer than one."""

@@ -34,12 +34,12 @@ from lifting_node.message_view import viewed
 from lifting_node.pipeline_node import PipelineNode
 from lifting_node.run import run_node
 from muscle_analyzer import conversions
-from muscle_analyzer.core.analyzer import MuscleAnalyzer, MuscleAnalyzerOptions
 from muscle_analyzer.core.exceptions import MuscleAnalyzerError
-from muscle_analyzer.core.muscle_analysis import MuscleAnalysis as Analysis
-from muscle_analyzer.core.muscle_strength import StrengthScaling
-from muscle_analyzer.core.segment_masses import MassDistribution
-from muscle_analyzer.core.static_optimization import StaticOptimizationOptions
+from muscle_analyzer.core.loads.analysis import MuscleAnalysis as Analysis
+from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer, MuscleAnalyzerOptions
+from muscle_analyzer.core.recruitment.static_optimization import StaticOptimizationOptions
+from muscle_analyzer.core.subject.muscle_strength import StrengthScaling
+from muscle_analyzer.core.subject.segment_masses import MassDistribution
 from muscle_analyzer.lift_queue import LiftQueue, WaitingLift
 
 WAITING_LIFTS: Final = 100

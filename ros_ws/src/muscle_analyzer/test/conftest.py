@@ -10,14 +10,14 @@ import pytest
 
 from human_model.skeleton_3d import Skeleton3D
 from human_model.subject import Subject
-from muscle_analyzer.core.analyzer import MuscleAnalyzer
 from muscle_analyzer.core.exceptions import ModelFileError
-from muscle_analyzer.core.inverse_dynamics import add_force
-from muscle_analyzer.core.motion_derivatives import differentiate, smooth
-from muscle_analyzer.core.multibody import MultibodyModel, compile_model
-from muscle_analyzer.core.opensim.motion_on_model import motion_on_model
-from muscle_analyzer.core.osim_reader import read_osim
-from muscle_analyzer.core.subject_model import lifting_model_path
+from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
+from muscle_analyzer.core.multibody.inverse_dynamics import add_force
+from muscle_analyzer.core.multibody.model import MultibodyModel, compile_model
+from muscle_analyzer.core.opensim_bridge.derivatives import differentiate, smooth
+from muscle_analyzer.core.opensim_bridge.motion_on_model import motion_on_model
+from muscle_analyzer.core.osim.reader import read_osim
+from muscle_analyzer.core.subject.model import lifting_model_path
 
 SQUATS = Path(__file__).resolve().parents[5] / 'shared' / 'data' / 'squats_bodyweight'
 

@@ -8,9 +8,9 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from muscle_analyzer.core.analyzer import MuscleAnalyzer
 from muscle_analyzer.core.exceptions import MuscleAnalyzerError
-from muscle_analyzer.core.muscle_analysis import MuscleAnalysis
+from muscle_analyzer.core.loads.analysis import MuscleAnalysis
+from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
 from muscle_analyzer.lift_queue import SAMPLES, LiftQueue, WaitingLift
 
 NO_TIMES = {'build_time': 0.0, 'solve_time': 0.0}

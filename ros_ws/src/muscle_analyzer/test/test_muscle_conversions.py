@@ -16,8 +16,8 @@ from human_model.skeleton_3d import Skeleton3D
 from human_model.subject import Subject
 from lifting_node.stamps import to_seconds
 from muscle_analyzer import conversions
-from muscle_analyzer.core.muscle_analysis import MuscleAnalysis
-from muscle_analyzer.core.torque_limits import JointTorques
+from muscle_analyzer.core.loads.analysis import MuscleAnalysis
+from muscle_analyzer.core.loads.torque_limits import JointTorques
 
 N, N_M, N_C = 2, 3, 4
 WEAK = SolveReport(SolveStatus.MUSCLE_TOO_WEAK, 'weak hip', 7, 1.5, 1e-9, 2e-9, 0.001, 0.002)

@@ -3,7 +3,7 @@
 """Strict readers of OpenSim's TRC, MOT and STO files, and a writer of TRC.
 
 Format as described in OpenSim's user guide, "Marker (.trc) Files"; MOT and STO are read by
-`muscle_analyzer.core.opensim.storage`.
+`muscle_analyzer.core.opensim_bridge.storage`.
 Nothing is repaired: a wrong count, an unsorted stamp or a word where a number belongs is an
 error that names file, line and field.
 """
@@ -18,8 +18,8 @@ import numpy as np
 from human_model.typing import Array
 from lifting_bringup.bags.exceptions import FileFormatError
 from muscle_analyzer.core.exceptions import StorageError
-from muscle_analyzer.core.opensim import storage
-from muscle_analyzer.core.opensim.storage import Storage
+from muscle_analyzer.core.opensim_bridge import storage
+from muscle_analyzer.core.opensim_bridge.storage import Storage
 
 _TRC_KEYS = ('DataRate', 'NumFrames', 'NumMarkers', 'Units')
 _TRC_LEADING_COLUMNS = 2

@@ -12,7 +12,7 @@ import numpy as np
 from lifting_bringup.bags.exceptions import FileFormatError
 from lifting_bringup.bags.opensim_files import read_storage, read_trc
 from lifting_bringup.bags.recording import Plate, RawRecording
-from muscle_analyzer.core.opensim.storage import Storage
+from muscle_analyzer.core.opensim_bridge.storage import Storage
 
 # Both namings in use: ground_force_1_vx / ground_force_1_mx and 1_ground_force_vx /
 # 1_ground_torque_x (OpenSim user guide, "External loads").

@@ -38,8 +38,8 @@ from motion_tracker.core.quiet_standing import (
     find_quiet_standing,
     missing_moment,
 )
-from muscle_analyzer.core.analyzer import MuscleAnalyzer
 from muscle_analyzer.core.exceptions import MuscleAnalyzerError
+from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
 
 #: Offset beyond which plates are not moved [m]: the largest errors of centres of pressure
 #: reported for force plates, Schmiedmayer and Kastner 2000 (J Biomech Eng 122:523).

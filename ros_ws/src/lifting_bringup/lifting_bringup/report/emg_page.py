@@ -21,8 +21,8 @@ from lifting_bringup.report.style import (
     percent_axis,
     to_svg,
 )
-from muscle_analyzer.core.emg import GIVEN_MVC
-from muscle_analyzer.core.emg_comparison import EmgMatch
+from muscle_analyzer.core.emg.comparison import EmgMatch
+from muscle_analyzer.core.emg.envelopes import GIVEN_MVC
 
 SIDES = {'r': 'right', 'l': 'left'}
 _COLUMNS = 2

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from muscle_analyzer.core.emg_comparison import EmgMatch
+from muscle_analyzer.core.emg.comparison import EmgMatch
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,375 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Static optimisation: which muscle forces balance the joint torques (equation 4.10).
+
+The sum of squared activations is minimised, or another criterion of muscle recruitment; reserve
+actuators make the balance possible in every frame, are paid for by their square in the same cost,
+and name the coordinate when muscles are too weak.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from human_model.report import SolveReport, SolveStatus
+from human_model.typing import Array
+from muscle_analyzer.core.exceptions import InputArrayError, OptionError
+from muscle_analyzer.core.recruitment.dual_newton import columns_of
+from muscle_analyzer.core.recruitment.min_max import SQUARES_SHARE, solve_min_max
+from muscle_analyzer.core.recruitment.muscle_recruitment import (
+    Account,
+    Actuators,
+    account,
+    first_guess,
+    remember,
+    residual_limit,
+    share_torque,
+)
+from muscle_analyzer.core.recruitment.reserves import Reserve
+
+#: Smallest activation OpenSim 4.6 allows a muscle in static optimisation (``min_control`` of
+#: the muscles of the lifting full-body model).
+MINIMUM_ACTIVATION = 0.01
+#: An activation nearer than this to its bound is at it: interior-point solutions come close.
+AT_BOUND = 1e-8
+#: So many coordinates or muscles are named in a report.
+NAMED = 3
+
+
+class Criterion(StrEnum):
+    """What muscle recruitment minimises.
+
+    The sums of squares and of cubes are equation 4.10 with the exponents 2 (the thesis, OpenSim's
+    default) and 3 (Crowninshield and Brand 1981, J Biomech 14:793); the largest activation is the
+    min/max criterion of Rasmussen et al. 2001 (J Biomech 34:409).
+    """
+
+    SQUARES = 'squares'
+    CUBES = 'cubes'
+    MIN_MAX = 'min_max'
+
+
+EXPONENTS = {Criterion.SQUARES: 2.0, Criterion.CUBES: 3.0, Criterion.MIN_MAX: 2.0}
+
+
+@dataclass(frozen=True)
+class StaticOptimizationOptions:
+    """Settings of the static optimisation.
+
+    Attributes
+    ----------
+    criterion
+        What is minimised, one of `Criterion`.
+    minimum_activation, maximum_activation
+        Bounds of every activation.
+    tolerance
+        Largest balance residual of a solution, relative to the largest torque (or 1 N m).
+    max_iterations
+        Limit of Newton steps.
+    """
+
+    criterion: str = Criterion.SQUARES
+    minimum_activation: float = MINIMUM_ACTIVATION
+    maximum_activation: float = 1.0
+    tolerance: float = 1e-10
+    max_iterations: int = 100
+
+
+class Outcome(NamedTuple):
+    """What the optimisation found in one frame.
+
+    Attributes
+    ----------
+    activation : (n_m,)
+    reserve, multiplier, residual : (n_c,)
+        Torque the reserves take [N m], dual solution [1 / (N m)], what is not balanced [N m].
+    weak : (n_c,) bool
+        Whether the muscles of a coordinate are too weak.
+    iterations : int
+    converged : bool
+    """
+
+    activation: Array
+    reserve: Array
+    multiplier: Array
+    residual: Array
+    weak: NDArray[np.bool_]
+    iterations: int
+    converged: bool
+
+
+@dataclass(frozen=True)
+class MuscleBalance:
+    """Solution of one frame.
+
+    Attributes
+    ----------
+    activation : (n_m,)
+    reserve : (n_c,)
+        Torque the reserves take [N m].
+    multiplier : (n_c,)
+        Dual solution, the warm start of the next frame [1 / (N m)].
+    residual : (n_c,)
+        What is not balanced [N m].
+    low, full : (n_m,)
+        Activations up to and from which a muscle is at its lower and upper bound.
+    unbalanced : tuple of str
+        Coordinates whose muscles are too weak.
+    report : SolveReport
+        Primal residual [N m], dual residual (KKT stationarity, dimensionless).
+    """
+
+    activation: Array
+    reserve: Array
+    multiplier: Array
+    residual: Array
+    low: Array
+    full: Array
+    unbalanced: tuple[str, ...]
+    report: SolveReport
+
+    @property
+    def at_lower(self) -> NDArray[np.bool_]:
+        """Muscles at their lower bound (n_m,)."""
+        return self.activation <= self.low
+
+    @property
+    def at_upper(self) -> NDArray[np.bool_]:
+        """Muscles at their upper bound (n_m,)."""
+        return self.activation >= self.full
+
+    @property
+    def converged(self) -> bool:
+        """Whether the optimum was found, be the muscles strong enough or not."""
+        return self.report.status is not SolveStatus.MUSCLE_NOT_CONVERGED
+
+
+class StaticOptimization:
+    """Solver of one model, warm-started from frame to frame.
+
+    Parameters
+    ----------
+    muscle_names
+        Names of the columns of the torque matrix.
+    reserves
+        Reserve of each row of the torque matrix.
+    options
+        Settings.
+    weight : (n_m,)
+        Of each muscle in the cost, all positive; 1 if omitted.
+    least_activation : (n_m,)
+        Lower bounds in place of ``options.minimum_activation`` where they are higher.
+
+    Raises
+    ------
+    OptionError
+        A setting that cannot be used, by name and value.
+    """
+
+    def __init__(
+        self,
+        muscle_names: tuple[str, ...],
+        reserves: tuple[Reserve, ...],
+        options: StaticOptimizationOptions | None = None,
+        weight: Array | None = None,
+        least_activation: Array | None = None,
+    ) -> None:
+        self.options = options or StaticOptimizationOptions()
+        try:
+            self.criterion = Criterion(self.options.criterion)
+        except ValueError:
+            known = ', '.join(Criterion)
+            raise OptionError(
+                f'criterion {self.options.criterion!r} is not known; options: {known}'
+            ) from None
+        self.muscle_names = muscle_names
+        self.coordinate_names = tuple(reserve.coordinate for reserve in reserves)
+        low, high = self.options.minimum_activation, self.options.maximum_activation
+        if not 0.0 <= low < high:
+            raise OptionError(
+                f'minimum_activation {low} must be in [0, maximum_activation {high})'
+            )
+        for reserve in reserves:
+            if not reserve.torque > 0.0:
+                raise OptionError(
+                    f'reserve of {reserve.coordinate}: torque {reserve.torque} N m must be '
+                    'positive: without it a weak muscle leaves no solution'
+                )
+        lower = np.full(len(muscle_names), low)
+        if least_activation is not None:
+            lower = np.maximum(lower, least_activation)
+        if lower.size and not lower.max() < high:
+            i = int(lower.argmax())
+            raise OptionError(
+                f'least activation of {muscle_names[i]}: {lower[i]} must be below '
+                f'maximum_activation {high}'
+            )
+        weight = np.ones(len(muscle_names)) if weight is None else np.array(weight, np.float64)
+        if not (np.isfinite(weight) & (weight > 0.0)).all():
+            raise OptionError('weight: every muscle needs a positive weight in the cost')
+        joints = list(dict.fromkeys(reserve.joint for reserve in reserves))
+        self.actuators = Actuators(
+            unit=np.array([reserve.torque for reserve in reserves], np.float64),
+            muscle_driven=np.array([reserve.muscle_driven for reserve in reserves], np.bool_),
+            joint=np.array([joints.index(reserve.joint) for reserve in reserves], np.int64),
+            lower=lower,
+            upper=np.full(len(muscle_names), high, np.float64),
+            weight=weight,
+            exponent=EXPONENTS[self.criterion],
+            tolerance=float(self.options.tolerance),
+            max_iterations=int(self.options.max_iterations),
+        )
+        self.past = np.zeros((2, len(reserves)))
+        # Where a muscle counts as at its bounds: not to be worked out for every frame.
+        self._low = self.actuators.lower + AT_BOUND
+        self._full = self.actuators.upper - AT_BOUND
+
+    def reset(self) -> None:
+        """Forget the frames before."""
+        self.past = np.zeros((2, len(self.coordinate_names)))
+
+    def solve(self, matrix: Array, torque: Array) -> MuscleBalance:
+        """Share the torques of one frame among the muscles.
+
+        Parameters
+        ----------
+        matrix : (n_c, n_m)
+            Torque of each muscle at full activation about each coordinate [N m].
+        torque : (n_c,)
+            Torque to balance [N m].
+
+        Raises
+        ------
+        InputArrayError
+            If a shape is wrong or a number is not finite, naming the first such coordinate.
+        """
+        began = time.perf_counter()
+        matrix, torque = self._checked(matrix, torque)
+        built = time.perf_counter()
+        outcome, found = self.share(matrix, torque)
+        return self.balance(outcome, found, built - began, time.perf_counter() - built)
+
+    def share(self, matrix: Array, torque: Array) -> tuple[Outcome, Account]:
+        """Share the torques of one frame as `solve`, whose input has been checked."""
+        columns = columns_of(matrix)
+        multiplier = first_guess(self.past)
+        share, cap, at_top = 1.0, np.inf, 0.0
+        if self.criterion is Criterion.MIN_MAX:
+            a = self.actuators
+            activation, residual, iterations, converged, cap = solve_min_max(
+                columns, a.unit, torque, a.lower, a.upper, a.weight, multiplier,
+                residual_limit(a, torque), a.max_iterations,
+            )  # fmt: skip
+            share, at_top = SQUARES_SHARE, cap
+        else:
+            activation, residual, iterations, converged = share_torque(
+                self.actuators, columns, torque, multiplier
+            )
+        remember(self.past, multiplier, converged)
+        reserve, weak = np.empty(torque.size), np.empty(torque.size, np.bool_)
+        found = account(
+            self.actuators, columns, torque, activation, residual, multiplier, share, cap,
+            reserve, weak,
+        )  # fmt: skip
+        found = found._replace(objective=found.objective + at_top)
+        outcome = Outcome(activation, reserve, multiplier, residual, weak, iterations, converged)
+        return outcome, found
+
+    def balance(
+        self, outcome: Outcome, found: Account, build_time: float, solve_time: float
+    ) -> MuscleBalance:
+        """Put a solution into words.
+
+        Parameters
+        ----------
+        outcome
+            The solution.
+        found
+            Account of it.
+        build_time, solve_time
+            To build and to solve the problem [s].
+        """
+        return MuscleBalance(
+            activation=outcome.activation,
+            reserve=outcome.reserve,
+            multiplier=outcome.multiplier,
+            residual=outcome.residual,
+            low=self._low,
+            full=self._full,
+            unbalanced=tuple([self.coordinate_names[j] for j in _places(outcome.weak)]),
+            report=self.report(outcome, found, build_time, solve_time),
+        )
+
+    def report(
+        self, outcome: Outcome, found: Account, build_time: float, solve_time: float
+    ) -> SolveReport:
+        """Give the report of a solution alone; parameters as in `balance`."""
+        status, message = self._verdict(outcome)
+        return SolveReport(
+            status=status,
+            message=message,
+            iterations=int(outcome.iterations),
+            objective=float(found.objective),
+            primal_residual=float(found.primal),
+            dual_residual=float(found.dual),
+            build_time=build_time,
+            solve_time=solve_time,
+        )
+
+    def _checked(self, matrix: Array, torque: Array) -> tuple[Array, Array]:
+        """Give the input as contiguous arrays of the right shape and finite numbers."""
+        matrix = np.ascontiguousarray(matrix, dtype=np.float64)
+        torque = np.ascontiguousarray(torque, dtype=np.float64)
+        shape = (len(self.coordinate_names), len(self.muscle_names))
+        if matrix.shape != shape or torque.shape != shape[:1]:
+            raise InputArrayError(
+                f'matrix {matrix.shape} and torque {torque.shape}: expected {shape} and '
+                f'{shape[:1]}'
+            )
+        bad = ~(np.isfinite(torque) & np.isfinite(matrix).all(axis=1))
+        if bad.any():
+            j = int(bad.argmax())
+            raise InputArrayError(
+                f'coordinate {self.coordinate_names[j]}: torque {torque[j]} or moment arms '
+                'are not finite'
+            )
+        return matrix, torque
+
+    def _verdict(self, outcome: Outcome) -> tuple[SolveStatus, str]:
+        """Say what happened, naming coordinates and muscles."""
+        if not outcome.converged:
+            j = int(np.abs(outcome.residual).argmax())
+            return SolveStatus.MUSCLE_NOT_CONVERGED, (
+                f'static optimisation not converged: {self.coordinate_names[j]} is off by '
+                f'{outcome.residual[j]:.3g} N m'
+            )
+        full, weak = _places(outcome.activation >= self._full), _places(outcome.weak)
+        bound = ''
+        if full:
+            names = [self.muscle_names[i] for i in full[:NAMED]]
+            bound = f'at full activation: {_some(names, len(full))}'
+        if not weak:
+            return SolveStatus.OK, bound
+        reserve = outcome.reserve.tolist()
+        weak.sort(key=lambda j: -abs(reserve[j]))
+        parts = [f'{self.coordinate_names[j]} by {reserve[j]:.1f} N m' for j in weak[:NAMED]]
+        text = f'muscles too weak, reserves help {_some(parts, len(weak))}'
+        return SolveStatus.MUSCLE_TOO_WEAK, f'{text}; {bound}' if bound else text
+
+
+def _places(condition: NDArray[np.bool_]) -> list[int]:
+    """Give where a condition holds."""
+    places: list[int] = condition.nonzero()[0].tolist()
+    return places
+
+
+def _some(first: list[str], count: int) -> str:
+    """Give the first names in words and the number of the others: a report is to be read."""
+    more = f' and {count - NAMED} more' if count > NAMED else ''
+    return ', '.join(first) + more
