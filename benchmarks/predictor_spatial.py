@@ -72,7 +72,8 @@ def recorded_lift(name: str) -> Lift:
     arrays = {
         key: truth[key]
         for key in ('time', 'position', 'velocity', 'acceleration', 'points', 'frames',
-                    'ground_force', 'cop', 'free_moment', 'hand_force', 'box_position')
+                    'ground_force', 'centre_of_pressure', 'free_moment', 'hand_force',
+                    'box_position')
     }  # fmt: skip
     names = {key: tuple(truth[key]) for key in ('coordinates', 'point_names', 'frame_names')}
     motion = BodyMotion(skeleton='3d_40dof', **arrays, **names)

@@ -96,7 +96,11 @@ def forces(recorded: BodyMotion, predicted: BodyMotion) -> Figure:
         for motion, colour, label in both(recorded, predicted):
             percent = np.linspace(0.0, 100.0, len(motion))
             panel.plot(percent, motion.ground_force[:, k, 2], color=colour, label=label)
-            panels[2].plot(-motion.cop[:, k, 1], motion.cop[:, k, 0], color=colour)
+            panels[2].plot(
+                -motion.centre_of_pressure[:, k, 1],
+                motion.centre_of_pressure[:, k, 0],
+                color=colour,
+            )
         foot = [motion.point(f'{p}_{"rl"[k]}')[0] for p in ('heel', 'toe')]
         panels[2].plot([-p[1] for p in foot], [p[0] for p in foot], color=ORANGE, lw=0.6)
         panel.set_title(f'vertical force, {side} foot')

@@ -43,7 +43,7 @@ def recording(found):
     time = np.array([f.motion.time[0] + f.filter_delay for f in found.frames])
     live = np.array([f.motion.time[0] for f in found.frames])
     forces = {}
-    for name in ('ground_force', 'cop', 'free_moment'):
+    for name in ('ground_force', 'centre_of_pressure', 'free_moment'):
         rows = found.live(name)
         columns = rows.reshape(len(rows), -1).T
         known = np.isfinite(columns[0])

@@ -61,7 +61,7 @@ def lift(request, bags, tracked):
     (measured,) = found.lifts
     time = found.live('time') - found.start
     inside = (time >= truth['time'][0]) & (time <= truth['time'][-1])
-    fields = ('position', 'ground_force', 'cop', 'hand_force')
+    fields = ('position', 'ground_force', 'centre_of_pressure', 'hand_force')
     live = SimpleNamespace(time=time[inside], **{f: found.live(f)[inside] for f in fields})
     motion = measured.lift.motion
     window = SimpleNamespace(
@@ -94,7 +94,7 @@ def test_joint_angles_in_the_sagittal_plane(lift, stream):
 
 def test_centre_of_pressure_of_the_lift(lift):
     """Every sample of the lift, zero-phase filtered."""
-    off = lift.window.cop - at(lift.truth, 'cop', lift.window.time)
+    off = lift.window.centre_of_pressure - at(lift.truth, 'centre_of_pressure', lift.window.time)
     loaded = at(lift.truth, 'ground_force', lift.window.time)[:, :, 2] > LOADED
     assert loaded.all()
     assert np.linalg.norm(off[loaded][:, :2], axis=1).max() <= COP_LIMIT
@@ -106,7 +106,7 @@ def test_centre_of_pressure_live(lift):
     Where the simulated centre of pressure turns within 10 ms (20 mm at 2.31 s), the plates'
     25 Hz filter cuts up to 6 mm off the tip, whatever filter of that cutoff it is.
     """
-    off = lift.live.cop - at(lift.truth, 'cop', lift.live.time)
+    off = lift.live.centre_of_pressure - at(lift.truth, 'centre_of_pressure', lift.live.time)
     distance = np.linalg.norm(off[:, :, :2], axis=2)
     loaded = at(lift.truth, 'ground_force', lift.live.time)[:, :, 2] > LOADED
     assert np.isfinite(distance[loaded]).all()
@@ -150,7 +150,7 @@ def outer_forces(motion, k):
             ExternalForce(
                 f'foot_{letter}',
                 motion.ground_force[k, side],
-                motion.cop[k, side],
+                motion.centre_of_pressure[k, side],
                 motion.free_moment[k, side],
             )
         )

@@ -44,7 +44,7 @@ class SimulatedForces:
         Centre [m] and yaw [rad].
     hand_force, hand_moment : ndarray (n, 2, 3)
         Of the box on the hands [N], [N m] about the grip centres.
-    ground_force, cop, free_moment : ndarray (n, 2, 3)
+    ground_force, centre_of_pressure, free_moment : ndarray (n, 2, 3)
         Of the ground on the feet [N], [m], [N m].
     torque : ndarray (n, n_q)
         Joint torques [N m]; zero at the pelvis.
@@ -58,7 +58,7 @@ class SimulatedForces:
     hand_force: Array
     hand_moment: Array
     ground_force: Array
-    cop: Array
+    centre_of_pressure: Array
     free_moment: Array
     torque: Array
 

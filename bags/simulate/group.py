@@ -98,8 +98,8 @@ def simulated_lift(subject: Subject, task: Task, seed: int | None = None) -> Lif
     truth = simulate_forces(stage, body, motion, time)
     block = body.skeleton.body_motion(
         time, truth.position, truth.velocity, truth.acceleration,
-        ground_force=truth.ground_force, cop=truth.cop, free_moment=truth.free_moment,
-        hand_force=truth.hand_force, box_position=truth.box[:, :3],
+        ground_force=truth.ground_force, centre_of_pressure=truth.centre_of_pressure,
+        free_moment=truth.free_moment, hand_force=truth.hand_force, box_position=truth.box[:, :3],
     )  # fmt: skip
     name = f'{task.name} of {subject.pseudonym}'
     return Lift(

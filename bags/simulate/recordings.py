@@ -147,8 +147,9 @@ class Session:
             _write(writer, streams)
         block = self.body.skeleton.body_motion(
             frames, truth.position, truth.velocity, truth.acceleration,
-            ground_force=truth.ground_force, cop=truth.cop, free_moment=truth.free_moment,
-            hand_force=truth.hand_force, box_position=truth.box[:, :3],
+            ground_force=truth.ground_force, centre_of_pressure=truth.centre_of_pressure,
+            free_moment=truth.free_moment, hand_force=truth.hand_force,
+            box_position=truth.box[:, :3],
         )  # fmt: skip
         _save_truth(
             folder / task.name,

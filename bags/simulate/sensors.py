@@ -127,7 +127,7 @@ def plate_readings(stage: Stage, forces: SimulatedForces, seed: int) -> dict[str
     plates = {}
     for k, side in enumerate(('right', 'left')):
         force = forces.ground_force[:, k]
-        moment = np.cross(forces.cop[:, k], force) + forces.free_moment[:, k]
+        moment = np.cross(forces.centre_of_pressure[:, k], force) + forces.free_moment[:, k]
         readings = []
         for values, noise, step in (
             (force, settings['plate_force_noise'], settings['plate_force_step']),

@@ -58,7 +58,7 @@ _TAIL = {
     'points': ('p', 3),
     'frames': ('f', 4),
     'ground_force': (2, 3),
-    'cop': (2, 3),
+    'centre_of_pressure': (2, 3),
     'free_moment': (2, 3),
     'hand_force': (2, 3),
     'box_position': (3,),
@@ -66,7 +66,7 @@ _TAIL = {
 #: So many values are summed by one thread; more may wait for several, longer than it takes.
 _FEW = 1000
 #: Arrays in which NaN means "none" (unloaded foot, no box).
-_MAY_BE_NAN = ('cop', 'box_position')
+_MAY_BE_NAN = ('centre_of_pressure', 'box_position')
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +93,7 @@ class BodyMotion:
         Unit quaternions xyzw, world <- segment.
     ground_force : ndarray (n, 2, 3)
         Force of the ground on the [right, left] foot [N].
-    cop : ndarray (n, 2, 3)
+    centre_of_pressure : ndarray (n, 2, 3)
         Centre of pressure [m], NaN when unloaded.
     free_moment : ndarray (n, 2, 3)
         Moment of the ground on the foot about the centre of pressure [N m].
@@ -114,7 +114,7 @@ class BodyMotion:
     frame_names: tuple[str, ...]
     frames: Array
     ground_force: Array
-    cop: Array
+    centre_of_pressure: Array
     free_moment: Array
     hand_force: Array
     box_position: Array

@@ -24,7 +24,7 @@ from human_model.typing import Array, IntArray
 #: Shape of one sample of the forces of a motion, and what stands for one that is not given.
 _LEFT_OUT: dict[str, tuple[tuple[int, ...], float]] = {
     'ground_force': ((2, 3), 0.0),
-    'cop': ((2, 3), np.nan),
+    'centre_of_pressure': ((2, 3), np.nan),
     'free_moment': ((2, 3), 0.0),
     'hand_force': ((2, 3), 0.0),
     'box_position': ((3,), np.nan),
@@ -239,8 +239,9 @@ class Skeleton:
         """Motion block of coordinates (n, n_q) and their rates.
 
         ``places``: what `points_and_frames` gave for these coordinates, if it was asked already.
-        ``forces``: ``ground_force``, ``cop``, ``free_moment``, ``hand_force`` (n, 2, 3) and
-        ``box_position`` (n, 3). What is left out is zero; cop and box_position are NaN.
+        ``forces``: ``ground_force``, ``centre_of_pressure``, ``free_moment``, ``hand_force``
+        (n, 2, 3) and ``box_position`` (n, 3). Forces that are left out are zero; centre of
+        pressure and box position are then NaN.
         """
         stamps = np.ascontiguousarray(time, dtype=np.float64)
         position = self._block('q', q)

@@ -47,7 +47,7 @@ def test_through_a_file(motion):
     assert again.coordinates == motion.coordinates
     assert again.skeleton == '3d_40dof'
     assert np.array_equal(again.points, motion.points)
-    assert np.all(np.isnan(again.cop))
+    assert np.all(np.isnan(again.centre_of_pressure))
 
 
 def test_columns_by_name(motion, body):
@@ -99,8 +99,8 @@ def test_bad_arrays_are_named(motion, name, change, words):
 
 def test_missing_field_is_named(motion):
     changed = fields(motion)
-    del changed['cop']
-    with pytest.raises(MotionError, match=r'motion\.cop: missing'):
+    del changed['centre_of_pressure']
+    with pytest.raises(MotionError, match=r'motion\.centre_of_pressure: missing'):
         BodyMotion.from_dict(changed)
 
 

@@ -84,13 +84,18 @@ def test_frames_are_those_of_their_segments(skeleton, rng):
 def test_motion_block(skeleton):
     q = np.array([skeleton.standing()] * 4)
     motion = skeleton.body_motion(
-        [0, 0.01, 0.02, 0.03], q, 0 * q, 0 * q, ground_force=np.full((4, 2, 3), 9.0), cop=None
+        [0, 0.01, 0.02, 0.03],
+        q,
+        0 * q,
+        0 * q,
+        ground_force=np.full((4, 2, 3), 9.0),
+        centre_of_pressure=None,
     )
     assert motion.skeleton == skeleton.name
     assert motion.point_names == POINTS
     assert motion.points == pytest.approx(skeleton.point_array(q))
     assert np.all(motion.ground_force == 9.0)
-    assert np.all(np.isnan(motion.cop))
+    assert np.all(np.isnan(motion.centre_of_pressure))
     assert np.all(motion.hand_force == 0.0)
     with pytest.raises(MotionError, match="unknown field 'wind'"):
         skeleton.body_motion([0.0], q[0], q[0], q[0], wind=1.0)

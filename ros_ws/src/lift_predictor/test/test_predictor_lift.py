@@ -118,7 +118,9 @@ def test_motion_and_forces_balance_on_the_skeleton(outcome, person, mass) -> Non
         for side in (0, 1):
             point = motion.point(f'hand_{"rl"[side]}')[i]
             external.append(
-                ExternalForce('foot', motion.ground_force[i, side], motion.cop[i, side])
+                ExternalForce(
+                    'foot', motion.ground_force[i, side], motion.centre_of_pressure[i, side]
+                )
             )
             external.append(ExternalForce('forearm', motion.hand_force[i, side], point))
         forces = skeleton.inverse_dynamics(
@@ -163,7 +165,9 @@ def test_turned_laboratory_gives_the_same_lift(predictor, outcome) -> None:
     assert other.report.objective == pytest.approx(result.predicted.report.objective, rel=1e-6)
     same, there = result.predicted.lift.motion, other.lift.motion
     np.testing.assert_allclose(there.points, same.points @ turn.T + shift, atol=1e-5)
-    np.testing.assert_allclose(there.cop, same.cop @ turn.T + shift, atol=1e-4)
+    np.testing.assert_allclose(
+        there.centre_of_pressure, same.centre_of_pressure @ turn.T + shift, atol=1e-4
+    )
     np.testing.assert_allclose(there.ground_force, same.ground_force @ turn.T, atol=0.1)
     back = np.einsum('ji,nfjk->nfik', turn, matrix_from_quaternion(there.frames))
     np.testing.assert_allclose(back, matrix_from_quaternion(same.frames), atol=1e-5)

@@ -38,7 +38,8 @@ def recording(name: str) -> Lift:
     arrays = {
         key: truth[key]
         for key in ('time', 'position', 'velocity', 'acceleration', 'points', 'frames',
-                    'ground_force', 'cop', 'free_moment', 'hand_force', 'box_position')
+                    'ground_force', 'centre_of_pressure', 'free_moment', 'hand_force',
+                    'box_position')
     }  # fmt: skip
     names = {key: tuple(truth[key]) for key in ('coordinates', 'point_names', 'frame_names')}
     motion = BodyMotion(skeleton='3d_40dof', **arrays, **names)
@@ -91,7 +92,7 @@ def test_motion_and_forces_balance_on_the_skeleton(solved, spatial) -> None:
         for k, side in enumerate(SIDES):
             external.append(
                 ExternalForce(
-                    f'foot_{side}', motion.ground_force[i, k], motion.cop[i, k],
+                    f'foot_{side}', motion.ground_force[i, k], motion.centre_of_pressure[i, k],
                     motion.free_moment[i, k],
                 )
             )  # fmt: skip
@@ -174,7 +175,7 @@ def mirrored(lift: Lift) -> Lift:
         points=motion.points[:, swapped(motion.point_names)] * mirror,
         frames=quaternion_from_matrix(frames),
         ground_force=motion.ground_force[:, ::-1] * mirror,
-        cop=motion.cop[:, ::-1] * mirror,
+        centre_of_pressure=motion.centre_of_pressure[:, ::-1] * mirror,
         free_moment=motion.free_moment[:, ::-1] * -mirror,
         hand_force=motion.hand_force[:, ::-1] * mirror,
         box_position=motion.box_position * mirror,

@@ -125,7 +125,7 @@ def test_hands_stay_on_the_box_and_feet_on_the_floor(lift):
 def test_centre_of_pressure_stays_inside_each_foot(lift):
     _, truth, _ = lift
     names = list(truth['point_names'])
-    points, cop = joined(truth, 'points'), joined(truth, 'cop')
+    points, cop = joined(truth, 'points'), joined(truth, 'centre_of_pressure')
     for k, side in enumerate('rl'):
         heel, toe = points[0, names.index(f'heel_{side}')], points[0, names.index(f'toe_{side}')]
         share = (cop[:, k] - heel) @ (toe - heel) / ((toe - heel) @ (toe - heel))
@@ -151,7 +151,7 @@ def test_plates_show_the_truth_with_their_noise(lift):
         assert 0.9 < difference.std() < 1.1
         assert abs(difference.mean()) < 0.1
         cop = centre_of_pressure(force, moment)[::10]
-        error = np.linalg.norm(cop[:, :2] - joined(truth, 'cop')[:, k, :2], axis=1)
+        error = np.linalg.norm(cop[:, :2] - joined(truth, 'centre_of_pressure')[:, k, :2], axis=1)
         # Noise of 0.3 N m on a few hundred newtons.
         assert np.sqrt(np.mean(error**2)) < 5e-3
 

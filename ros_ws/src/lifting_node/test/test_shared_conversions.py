@@ -32,7 +32,7 @@ def make_motion(n=3):
         frame_names=FRAMES,
         frames=frames,
         ground_force=rng.normal(size=(n, 2, 3)),
-        cop=cop,
+        centre_of_pressure=cop,
         free_moment=rng.normal(size=(n, 2, 3)),
         hand_force=rng.normal(size=(n, 2, 3)),
         box_position=np.full((n, 3), np.nan),
@@ -60,7 +60,15 @@ def test_motion_survives_a_message():
     message = conversions.motion_to_msg(motion, quality)
     back = conversions.motion_from_msg(message)
     np.testing.assert_allclose(back.time, motion.time, atol=1e-6)
-    for name in ('position', 'velocity', 'points', 'frames', 'ground_force', 'cop', 'hand_force'):
+    for name in (
+        'position',
+        'velocity',
+        'points',
+        'frames',
+        'ground_force',
+        'centre_of_pressure',
+        'hand_force',
+    ):
         np.testing.assert_array_equal(getattr(back, name), getattr(motion, name))
     assert conversions.quality_from_msg(message).status.tolist() == [0, 0, 101]
 

@@ -33,7 +33,7 @@ def motion_at(skeleton):
         q = skeleton.standing()
         loaded = {
             'ground_force': [[[0.0, 0.0, 600.0], [0.0, 0.0, 0.0]]],
-            'cop': [[[0.05, -0.1, 0.0], [np.nan] * 3]],
+            'centre_of_pressure': [[[0.05, -0.1, 0.0], [np.nan] * 3]],
         }
         return skeleton.body_motion(stamp, q, 0.0 * q, 0.0 * q, **(loaded | forces))
 

@@ -137,7 +137,11 @@ def cop_to_msg(frame: TrackedFrame, side: int | None = None) -> PointStamped | N
 
     None while unloaded.
     """
-    at = frame.total_cop if side is None else frame.motion.cop[0, side]
+    at = (
+        frame.total_centre_of_pressure
+        if side is None
+        else frame.motion.centre_of_pressure[0, side]
+    )
     if not np.all(np.isfinite(at)):
         return None
     message = PointStamped()

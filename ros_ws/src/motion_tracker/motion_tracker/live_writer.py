@@ -32,7 +32,7 @@ _MOTION: Final = {
     'points': 'points',
     'frames': 'frames',
     'ground_force': 'ground_force',
-    'centre_of_pressure': 'cop',
+    'centre_of_pressure': 'centre_of_pressure',
     'free_moment': 'free_moment',
     'hand_force': 'hand_force',
     'box_position': 'box_position',
@@ -121,11 +121,18 @@ class LiveWriter:
 
         None while unloaded.
         """
-        at = frame.total_cop if side is None else frame.motion.cop[0, side]
+        at = (
+            frame.total_centre_of_pressure
+            if side is None
+            else frame.motion.centre_of_pressure[0, side]
+        )
         if not math.isfinite(at.sum()):
             return None
         template, numbers = self._template(
-            'cop', None, lambda: conversions.cop_to_msg(frame, side), lambda made: made.last(3)
+            'cop',
+            None,
+            lambda: conversions.cop_to_msg(frame, side),
+            lambda made: made.last(3),
         )
         numbers[:] = at
         return template.stamped(float(frame.motion.time[0]))

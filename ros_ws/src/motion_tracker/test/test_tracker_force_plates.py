@@ -8,7 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from motion_tracker.core.errors import ForcePlateError
-from motion_tracker.core.force_plates import PlateGeometry, ground_reaction, total_cop
+from motion_tracker.core.force_plates import (
+    PlateGeometry,
+    ground_reaction,
+    total_centre_of_pressure,
+)
 
 shear = st.floats(-100.0, 100.0)
 place = st.floats(-0.5, 0.5)
@@ -37,7 +41,7 @@ def test_a_known_force_at_a_known_place_is_found_again(x, y, fx, fy, fz, tz, tur
     at, force = np.array([x, y, 0.05]), np.array([fx, fy, fz])
     moment = np.cross(at - geometry.origin, force) + [0.0, 0.0, tz]
     foot = ground_reaction(force @ geometry.rotation, moment @ geometry.rotation, geometry, 20.0)
-    assert foot.cop[0] == pytest.approx(at, abs=1e-9)
+    assert foot.centre_of_pressure[0] == pytest.approx(at, abs=1e-9)
     assert foot.force[0] == pytest.approx(force, abs=1e-9)
     assert foot.free_moment[0] == pytest.approx([0.0, 0.0, tz], abs=1e-8)
 
@@ -47,8 +51,8 @@ def test_below_the_threshold_a_foot_is_silent():
         [[1.0, 2.0, 19.9], [1.0, 2.0, 20.1]], np.ones((2, 3)), PlateGeometry('right'), 20.0
     )
     assert foot.loaded.tolist() == [False, True]
-    assert np.isnan(foot.cop[0]).all()
-    assert np.isfinite(foot.cop[1]).all()
+    assert np.isnan(foot.centre_of_pressure[0]).all()
+    assert np.isfinite(foot.centre_of_pressure[1]).all()
     assert not foot.force[0].any()
     assert not foot.free_moment[0].any()
 
@@ -56,7 +60,7 @@ def test_below_the_threshold_a_foot_is_silent():
 def both(*feet):
     return (
         np.stack([foot.force for foot in feet], axis=1),
-        np.stack([foot.cop for foot in feet], axis=1),
+        np.stack([foot.centre_of_pressure for foot in feet], axis=1),
     )
 
 
@@ -65,14 +69,14 @@ def test_total_centre_of_pressure_is_weighted_by_the_load():
         ground_reaction([[0.0, 0.0, load]], [[0.0, -x * load, 0.0]], PlateGeometry('p'), 20.0)
         for x, load in ((0.1, 300.0), (0.4, 100.0), (5.0, 10.0))
     ]
-    assert total_cop(*both(*feet[:2]))[0] == pytest.approx([0.175, 0.0, 0.0])
+    assert total_centre_of_pressure(*both(*feet[:2]))[0] == pytest.approx([0.175, 0.0, 0.0])
     # The third foot is below the threshold.
-    assert total_cop(*both(*feet[1:]))[0] == pytest.approx([0.4, 0.0, 0.0])
+    assert total_centre_of_pressure(*both(*feet[1:]))[0] == pytest.approx([0.4, 0.0, 0.0])
 
 
 def test_total_of_unloaded_feet_has_no_place():
     foot = ground_reaction(np.zeros((1, 3)), np.zeros((1, 3)), PlateGeometry('p'), 20.0)
-    assert np.isnan(total_cop(*both(foot, foot))).all()
+    assert np.isnan(total_centre_of_pressure(*both(foot, foot))).all()
 
 
 def test_geometry_is_checked():

@@ -174,7 +174,14 @@ def test_a_recording_over_topics_gives_what_the_core_gives(station, recording):
     (lift,) = [o.lift for o in expected if isinstance(o, TrackedLift)]
     received = lift_from_msg(station.received['measured_lift'][0])
     assert received.lift_id == lift.lift_id == 'lift_001'
-    for name in ('position', 'velocity', 'acceleration', 'ground_force', 'cop', 'hand_force'):
+    for name in (
+        'position',
+        'velocity',
+        'acceleration',
+        'ground_force',
+        'centre_of_pressure',
+        'hand_force',
+    ):
         assert np.array_equal(
             getattr(received.motion, name), getattr(lift.motion, name), equal_nan=True
         ), name
@@ -190,7 +197,9 @@ def test_a_recording_over_topics_gives_what_the_core_gives(station, recording):
     assert total == [frame.motion.ground_force[0, :, 2].sum() for frame in loaded]
     for message, frame in zip(station.received['ground_reaction/cop'], loaded, strict=True):
         share = frame.motion.ground_force[0, :, 2] / frame.motion.ground_force[0, :, 2].sum()
-        assert message.point.y == pytest.approx(share @ frame.motion.cop[0, :, 1], abs=1e-9)
+        assert message.point.y == pytest.approx(
+            share @ frame.motion.centre_of_pressure[0, :, 1], abs=1e-9
+        )
     assert station.node.counts['errors'] == 0
 
 

@@ -128,7 +128,7 @@ def test_results_do_not_depend_on_the_order_of_arrival(
                 'points',
                 'frames',
                 'ground_force',
-                'cop',
+                'centre_of_pressure',
                 'free_moment',
                 'hand_force',
                 'box_position',
@@ -149,7 +149,7 @@ def test_forces_add_up(outputs, person):
     # Well after lift-off, where the box is carried by the hands alone.
     high = slice(40, -5)
     assert carried[high] == pytest.approx(-MASS * (GRAVITY + acceleration[high]), abs=3.0)
-    assert motion.cop[:, 0, 1] == pytest.approx(-0.15, abs=1e-3)
+    assert motion.centre_of_pressure[:, 0, 1] == pytest.approx(-0.15, abs=1e-3)
 
 
 def test_missing_plate_is_a_status_and_not_the_end(tracker, lift, sides, solver):

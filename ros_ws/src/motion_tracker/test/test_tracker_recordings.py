@@ -144,13 +144,18 @@ def test_start_and_end_within_twenty_milliseconds(run):
 
 def test_centre_of_pressure_within_five_millimetres(run):
     motion = run.lift.lift.motion
-    away = np.linalg.norm(motion.cop - at(run, motion.time, 'cop'), axis=2)
+    away = np.linalg.norm(
+        motion.centre_of_pressure - at(run, motion.time, 'centre_of_pressure'), axis=2
+    )
     assert np.isfinite(away).all()
     assert away.max() <= 5e-3
     times = np.array([f.motion.time[0] for f in run.frames])
     inside = (times > run.time[0] + 0.5) & (times < run.time[-1])
-    live = np.array([f.motion.cop[0] for f in run.frames])[inside]
-    assert rms(np.linalg.norm(live - at(run, times[inside], 'cop'), axis=2)).max() <= 5e-3
+    live = np.array([f.motion.centre_of_pressure[0] for f in run.frames])[inside]
+    assert (
+        rms(np.linalg.norm(live - at(run, times[inside], 'centre_of_pressure'), axis=2)).max()
+        <= 5e-3
+    )
 
 
 def test_hand_force_follows_the_truth_from_the_floor_on(run):

@@ -242,7 +242,7 @@ def box_lift():
     body = skeleton.body_motion(
         # Stamps as of a recording: seconds since 1970.
         1.7e9 + time, q, -2.0 * by * np.sin(phase), -4.0 * by * np.cos(phase),
-        ground_force=force, cop=cop, hand_force=hand, free_moment=moment,
+        ground_force=force, centre_of_pressure=cop, hand_force=hand, free_moment=moment,
     )  # fmt: skip
     motion = motion_on_model(analyzer.new_transfer(body.skeleton), body, 1.7e9)
     return BoxLift(analyzer, body, motion)

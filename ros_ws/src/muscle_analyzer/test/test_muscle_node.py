@@ -67,7 +67,7 @@ def standing(skeleton, time, box_weight=0.0):
     ground[:, :, 2] = 0.5 * (PERSON.mass * 9.80665 + box_weight)
     hands[:, :, 2] = -0.5 * box_weight
     cop = np.stack([motion.point('mtp_r'), motion.point('mtp_l')], axis=1)
-    return replace(motion, ground_force=ground, hand_force=hands, cop=cop)
+    return replace(motion, ground_force=ground, hand_force=hands, centre_of_pressure=cop)
 
 
 class Station:

@@ -179,7 +179,7 @@ def _missing_by_model(
         standing.qd,
         standing.qdd,
         ground_force=force,
-        cop=places,
+        centre_of_pressure=places,
         free_moment=moment - np.cross(places, force),
     )
     analyzer = MuscleAnalyzer()

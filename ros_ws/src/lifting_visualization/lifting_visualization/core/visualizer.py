@@ -155,7 +155,10 @@ class Visualizer:
             shapes += [nothing(GROUND, k) for k in range(2)]
         else:
             shapes += drawing.ground_forces(
-                GROUND, motion.ground_force[-1], motion.cop[-1], self.options.force_length
+                GROUND,
+                motion.ground_force[-1],
+                motion.centre_of_pressure[-1],
+                self.options.force_length,
             )
         if abs(now - self._load_stamp) > self.options.fresh:
             shapes += [nothing(SPINE, k) for k in range(2)]

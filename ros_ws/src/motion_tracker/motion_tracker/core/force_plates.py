@@ -75,7 +75,7 @@ class GroundReaction:
     ----------
     force : ndarray (n, 3)
         Force of the ground on the person [N]; zero while unloaded.
-    cop : ndarray (n, 3)
+    centre_of_pressure : ndarray (n, 3)
         Centre of pressure on the plate's surface [m]; NaN while unloaded.
     free_moment : ndarray (n, 3)
         Moment about the centre of pressure [N m]; only its vertical part is not zero.
@@ -84,7 +84,7 @@ class GroundReaction:
     """
 
     force: Array
-    cop: Array
+    centre_of_pressure: Array
     free_moment: Array
     loaded: npt.NDArray[np.bool_]
 
@@ -126,7 +126,7 @@ def ground_reaction(
     )
 
 
-def total_cop(force: Array, cop: Array) -> Array:
+def total_centre_of_pressure(force: Array, cop: Array) -> Array:
     """Centre of pressure (n, 3) [m] of all feet together.
 
     The mean of the feet's, weighted by their vertical forces; NaN where no foot is loaded.

@@ -162,7 +162,7 @@ class LiveMotion:
         force, cop, free = feet(
             wrench, self._rotation, self._origin, self._surface, self._settings.force_threshold
         )
-        return {'ground_force': force, 'cop': cop, 'free_moment': free}, silent
+        return {'ground_force': force, 'centre_of_pressure': cop, 'free_moment': free}, silent
 
     def _held(self, hands: Array, box: Array | None, lifting: bool) -> float | None:
         """Mass in the hands [kg]; None while it is not known."""

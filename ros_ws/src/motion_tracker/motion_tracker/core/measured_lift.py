@@ -196,13 +196,13 @@ class LiftBuilder:
         n = len(times)
         forces = {
             'ground_force': np.zeros((n, 2, 3)),
-            'cop': np.full((n, 2, 3), np.nan),
+            'centre_of_pressure': np.full((n, 2, 3), np.nan),
             'free_moment': np.zeros((n, 2, 3)),
         }
         for side, foot in enumerate(feet.values()):
             if foot is not None:
                 forces['ground_force'][:, side] = foot.force
-                forces['cop'][:, side] = foot.cop
+                forces['centre_of_pressure'][:, side] = foot.centre_of_pressure
                 forces['free_moment'][:, side] = foot.free_moment
         return forces, [name for name, foot in feet.items() if foot is None]
 

@@ -12,7 +12,7 @@ from human_model.report import SolveStatus
 from human_model.typing import Array
 from motion_tracker.core.errors import TrackerError
 from motion_tracker.core.filters import MOTION_CUTOFF, PLATE_CUTOFF
-from motion_tracker.core.force_plates import total_cop
+from motion_tracker.core.force_plates import total_centre_of_pressure
 from motion_tracker.core.hand_force import HandForceSettings
 from motion_tracker.core.ik_types import IKSettings, IKSolution
 from motion_tracker.core.lift_events import LiftEvent, LiftEventSettings
@@ -100,9 +100,11 @@ class TrackedFrame:
         return np.asarray(self.motion.ground_force[0].sum(axis=0))
 
     @property
-    def total_cop(self) -> Array:
+    def total_centre_of_pressure(self) -> Array:
         """Centre of pressure of both feet (3,) [m]; NaN while neither is loaded."""
-        return np.asarray(total_cop(self.motion.ground_force, self.motion.cop)[0])
+        return np.asarray(
+            total_centre_of_pressure(self.motion.ground_force, self.motion.centre_of_pressure)[0]
+        )
 
 
 @dataclass(frozen=True)

@@ -49,7 +49,11 @@ def held_posture(skeleton, pose, box_weight=100.0, n=1, **changes):
     centre = (WEIGHT * body + box_weight * box) / (WEIGHT + box_weight)
     cop = points[:, [POINTS.index('mtp_r'), POINTS.index('mtp_l')]].copy()
     cop[:, :, 0] = centre[:, None, 0]
-    forces = {'ground_force': np.zeros((n, 2, 3)), 'hand_force': np.zeros((n, 2, 3)), 'cop': cop}
+    forces = {
+        'ground_force': np.zeros((n, 2, 3)),
+        'hand_force': np.zeros((n, 2, 3)),
+        'centre_of_pressure': cop,
+    }
     forces['ground_force'][:, :, 2] = 0.5 * (WEIGHT + box_weight)
     forces['hand_force'][:, :, 2] = -0.5 * box_weight
     still = np.zeros_like(q)
@@ -154,7 +158,7 @@ def test_predicted_lift_may_face_anywhere(analyzer):
         points=straight.points @ turn.T + place,
         frames=quaternion_from_matrix(turn @ matrix_from_quaternion(straight.frames)),
         ground_force=straight.ground_force @ turn.T,
-        cop=straight.cop @ turn.T + place,
+        centre_of_pressure=straight.centre_of_pressure @ turn.T + place,
         hand_force=straight.hand_force @ turn.T,
     )
     first, second = (analyzer.analyze(motion, 'l', 'predicted') for motion in (straight, turned))
@@ -247,7 +251,9 @@ def test_muscles_too_weak_name_coordinate_and_muscles(analyzer, skeleton):
 
 def test_no_ground_force_gives_no_numbers(analyzer, skeleton):
     lost = np.full((1, 2, 3), np.nan)
-    motion = held_posture(skeleton, POSE_3D, cop=lost, ground_force=np.zeros((1, 2, 3)))
+    motion = held_posture(
+        skeleton, POSE_3D, centre_of_pressure=lost, ground_force=np.zeros((1, 2, 3))
+    )
     result = analyzer.analyze(motion, source='measured')
     assert result.report.status == SolveStatus.MUSCLE_NO_GROUND_FORCE
     assert np.isnan(result.compression[0]) and np.isnan(result.activation).all()
@@ -255,9 +261,11 @@ def test_no_ground_force_gives_no_numbers(analyzer, skeleton):
 
 def test_loaded_foot_without_centre_of_pressure_is_named(analyzer, skeleton):
     motion = held_posture(skeleton, POSE_3D)
-    cop = motion.cop.copy()
+    cop = motion.centre_of_pressure.copy()
     cop[:, 1] = np.nan
-    result = analyzer.analyze(held_posture(skeleton, POSE_3D, cop=cop), source='measured')
+    result = analyzer.analyze(
+        held_posture(skeleton, POSE_3D, centre_of_pressure=cop), source='measured'
+    )
     assert result.report.status == SolveStatus.MUSCLE_BAD_INPUT
     assert 'left foot: ground force of 361 N' in result.report.message
     assert np.isnan(result.l5_s1_force).all()
@@ -265,9 +273,11 @@ def test_loaded_foot_without_centre_of_pressure_is_named(analyzer, skeleton):
 
 def test_worst_sample_is_reported(analyzer, skeleton):
     motion = held_posture(skeleton, POSE_3D, n=3)
-    cop = motion.cop.copy()
+    cop = motion.centre_of_pressure.copy()
     cop[1] = np.nan
-    result = analyzer.analyze(held_posture(skeleton, POSE_3D, n=3, cop=cop), source='measured')
+    result = analyzer.analyze(
+        held_posture(skeleton, POSE_3D, n=3, centre_of_pressure=cop), source='measured'
+    )
     assert result.status.tolist() == [0, int(SolveStatus.MUSCLE_NO_GROUND_FORCE), 0]
     assert result.report.status == SolveStatus.MUSCLE_NO_GROUND_FORCE
     assert np.isfinite(result.compression[[0, 2]]).all()

@@ -48,7 +48,7 @@ def test_wrench_is_moment_about_the_origin_and_force(held, forces):
     given = outside_wrenches(held, forces)
     assert given.loaded.all() and given.complete.all()
     for side, body in enumerate(PLACES.feet):
-        force, place = forces.ground_force[:, side], forces.cop[:, side]
+        force, place = forces.ground_force[:, side], forces.centre_of_pressure[:, side]
         moment = np.cross(place, force) + forces.free_moment[:, side]
         np.testing.assert_allclose(given.external[:, body, 3:], to_opensim(force))
         np.testing.assert_allclose(given.external[:, body, :3], to_opensim(moment), atol=1e-12)
@@ -62,7 +62,7 @@ def test_wrench_is_moment_about_the_origin_and_force(held, forces):
 
 @pytest.mark.parametrize('axis', [0, 1, 2])
 def test_foot_without_centre_of_pressure_is_not_pushed(held, forces, axis):
-    forces.cop[1, 0, axis] = np.nan
+    forces.centre_of_pressure[1, 0, axis] = np.nan
     given = outside_wrenches(held, forces)
     assert given.loaded.tolist() == [[True, True], [False, True], [True, True]]
     assert given.complete.tolist() == [True, False, True]

@@ -33,7 +33,12 @@ def upright(q, skeleton):
     cop = np.array(feet) * [1.0, 1.0, 0.0]
     force = np.array([[0.0, 0.0, 0.5 * WEIGHT]] * 2)
     return skeleton.body_motion(
-        [1.0], q[None], 0.0 * q[None], 0.0 * q[None], ground_force=force[None], cop=cop[None]
+        [1.0],
+        q[None],
+        0.0 * q[None],
+        0.0 * q[None],
+        ground_force=force[None],
+        centre_of_pressure=cop[None],
     )
 
 
@@ -153,5 +158,7 @@ def test_a_sample_without_motion_has_no_pose():
     lost = analyzer.analyze(motion, tracker_status=[101])
     assert np.isnan(lost.disc_position).all()
     assert np.isnan(lost.disc_orientation).all()
-    lifted = replace(motion, ground_force=np.zeros((1, 2, 3)), cop=np.full((1, 2, 3), np.nan))
+    lifted = replace(
+        motion, ground_force=np.zeros((1, 2, 3)), centre_of_pressure=np.full((1, 2, 3), np.nan)
+    )
     assert np.isnan(analyzer.analyze(lifted).disc_orientation).all()

@@ -48,7 +48,7 @@ def crouch(skeleton, box_weight=100.0, **rates):
     ground, hands = np.zeros((1, 2, 3)), np.zeros((1, 2, 3))
     ground[..., 2] = 0.5 * (WEIGHT + box_weight)
     hands[..., 2] = -0.5 * box_weight
-    return replace(motion, ground_force=ground, hand_force=hands, cop=cop)
+    return replace(motion, ground_force=ground, hand_force=hands, centre_of_pressure=cop)
 
 
 def torques(analyzer, motion):
@@ -81,9 +81,9 @@ def test_signs_of_a_crouch_with_a_box(analyzer, kind):
 
 def test_ground_force_further_forward_asks_for_plantarflexion(analyzer):
     motion = crouch(Skeleton3D.of(SUBJECT))
-    cop = motion.cop.copy()
+    cop = motion.centre_of_pressure.copy()
     cop[0, :, 0] += 0.1
-    results = [torques(analyzer, m)[1] for m in (motion, replace(motion, cop=cop))]
+    results = [torques(analyzer, m)[1] for m in (motion, replace(motion, centre_of_pressure=cop))]
     lever = -0.1 * motion.ground_force[0, 0, 2]
     for joint, sign in (('ankle_angle_r', 1.0), ('knee_angle_l', -1.0), ('hip_flexion_r', 1.0)):
         before, after = (result.torque[0, column(result, joint)] for result in results)

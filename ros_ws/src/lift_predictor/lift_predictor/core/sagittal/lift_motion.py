@@ -70,7 +70,7 @@ def body_motion(
     cop = motion.points[:, [POINTS.index(f'ankle_{side}') for side in 'rl']].copy()
     cop[..., 0] = loads.zmp[:, None]
     cop[..., 2] = task.parameters.ground_height
-    return _into_laboratory(replace(motion, cop=cop), task)
+    return _into_laboratory(replace(motion, centre_of_pressure=cop), task)
 
 
 def _in_plane(vectors: Array) -> Array:
@@ -85,7 +85,7 @@ def _into_laboratory(motion: BodyMotion, task: LiftTask2D) -> BodyMotion:
         points=task.plane.to_world(motion.points),
         frames=quaternion_from_matrix(turn @ matrix_from_quaternion(motion.frames)),
         ground_force=motion.ground_force @ turn.T,
-        cop=task.plane.to_world(motion.cop),
+        centre_of_pressure=task.plane.to_world(motion.centre_of_pressure),
         hand_force=motion.hand_force @ turn.T,
         box_position=task.plane.to_world(motion.box_position),
     )

@@ -57,7 +57,7 @@ def body_motion(
         time,
         *motion,
         ground_force=frame.turned(loads.ground_force),
-        cop=pressure,
+        centre_of_pressure=pressure,
         free_moment=free,
         hand_force=frame.turned(loads.hand_force),
         box_position=box,
@@ -85,10 +85,10 @@ def joint_torques(task: SpatialTask, motion: BodyMotion) -> tuple[Array, Array, 
     for i in range(len(motion)):
         external = []
         for k, side in enumerate(SIDES):
-            if np.all(np.isfinite(motion.cop[i, k])):
+            if np.all(np.isfinite(motion.centre_of_pressure[i, k])):
                 external.append(
                     ExternalForce(
-                        f'foot_{side}', motion.ground_force[i, k], motion.cop[i, k],
+                        f'foot_{side}', motion.ground_force[i, k], motion.centre_of_pressure[i, k],
                         motion.free_moment[i, k],
                     )
                 )  # fmt: skip

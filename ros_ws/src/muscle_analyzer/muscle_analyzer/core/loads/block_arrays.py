@@ -58,7 +58,7 @@ class OutsideForces(NamedTuple):
 
     Attributes
     ----------
-    ground_force, cop, free_moment, hand_force : (n, 2, 3)
+    ground_force, centre_of_pressure, free_moment, hand_force : (n, 2, 3)
         N, m, N m, N.
     points : (n, n_p, 3)
         m.
@@ -67,7 +67,7 @@ class OutsideForces(NamedTuple):
     """
 
     ground_force: Array
-    cop: Array
+    centre_of_pressure: Array
     free_moment: Array
     hand_force: Array
     points: Array
@@ -141,14 +141,14 @@ def outside_wrenches(held: Held[Places], forces: OutsideForces) -> Loaded:
         Of the block.
     """
     places = held.content
-    n = forces.cop.shape[0]
+    n = forces.centre_of_pressure.shape[0]
     out = Loaded(
         np.zeros((n, places.n_bodies, 6)), np.empty((n, 2), np.bool_), np.empty(n, np.bool_)
     )
     force, place, moment = np.empty(3), np.empty(3), np.empty(3)
     for k in range(n):
         for side in range(2):
-            cop = forces.cop[k, side]
+            cop = forces.centre_of_pressure[k, side]
             out.loaded[k, side] = np.isfinite(cop[0] + cop[1] + cop[2])
             if out.loaded[k, side]:
                 _to_opensim(forces.ground_force[k, side], force)

@@ -193,7 +193,7 @@ class BlockSolver:
             self._places,
             OutsideForces(
                 motion.ground_force,
-                motion.cop,
+                motion.centre_of_pressure,
                 motion.free_moment,
                 motion.hand_force,
                 motion.points,

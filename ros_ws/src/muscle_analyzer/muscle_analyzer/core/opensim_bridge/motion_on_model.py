@@ -147,7 +147,7 @@ def forces_of(motion: BodyMotion) -> tuple[PointForce, ...]:
 
     A foot without a centre of pressure is unloaded, as in the analysis.
     """
-    place = to_opensim(motion.cop)
+    place = to_opensim(motion.centre_of_pressure)
     loaded = np.all(np.isfinite(place), axis=2, keepdims=True)
     ground = [
         np.where(loaded, array, 0.0)
