@@ -23,6 +23,11 @@ NODES = (
     'lifting_visualization',
 )
 README = (ROOT / 'README.md').read_text(encoding='utf-8')
+TOPICS = (ROOT / 'docs' / 'topics.md').read_text(encoding='utf-8')
+COMMANDS = (ROOT / 'docs' / 'commands.md').read_text(encoding='utf-8')
+ALARMS = (ROOT / 'docs' / 'alarms.md').read_text(encoding='utf-8')
+RECORDINGS = (ROOT / 'docs' / 'recordings.md').read_text(encoding='utf-8')
+README_LINES = 120
 DOCUMENTS = sorted(
     path
     for path in (
@@ -127,9 +132,9 @@ def endpoints(package: str, methods: tuple[str, ...]) -> dict[str, Endpoint]:
 
 
 def documented() -> dict[str, tuple[str, str, str]]:
-    """Return type, quality of service and publisher by topic of the README's table."""
+    """Return type, quality of service and publisher by topic of the table in docs/topics.md."""
     rows = re.findall(
-        r'^\| `([\w/{},]+)` \| `(\w+/\w+)` \| (\w+) \| (`?\w+`?) \|', README, re.MULTILINE
+        r'^\| `([\w/{},]+)` \| `(\w+/\w+)` \| (\w+) \| (`?\w+`?) \|', TOPICS, re.MULTILINE
     )
     return {
         name: (kind, quality, publisher.strip('`'))
@@ -186,14 +191,14 @@ def _served(package: str, tree: ast.Module, types: dict[str, str]) -> dict[str, 
 
 def test_services_table_is_what_the_nodes_serve() -> None:
     rows = re.findall(
-        r'^\| `([\w/]+)`(?: \(action\))? \| `(\w+/\w+)` \| [^|]*\|$', README, re.MULTILINE
+        r'^\| `([\w/]+)`(?: \(action\))? \| `(\w+/\w+)` \| [^|]*\|$', TOPICS, re.MULTILINE
     )
     assert dict(rows) == {
         name: kind for package in NODES for name, kind in served(package).items()
     }
 
 
-@pytest.mark.parametrize('name', ['README.md', 'docs/architecture.md'])
+@pytest.mark.parametrize('name', ['docs/topics.md', 'docs/architecture.md'])
 def test_depths_of_the_queues_are_those_of_the_nodes(name: str) -> None:
     from lifting_node import qos
 
@@ -241,8 +246,12 @@ def test_commands_exist(path: Path) -> None:
             assert set(re.findall(r'(--[a-z-]+)', match[2])) <= commands[match[1]], code
 
 
-def test_every_lift_command_is_in_the_readme() -> None:
-    assert [name for name in lift_commands() if f'| `lift {name}' not in README] == []
+def test_every_lift_command_is_documented() -> None:
+    assert [name for name in lift_commands() if f'| `lift {name}' not in COMMANDS] == []
+
+
+def test_readme_is_a_first_page() -> None:
+    assert len(README.splitlines()) <= README_LINES
 
 
 def anchors(path: Path) -> set[str]:
@@ -313,7 +322,7 @@ def test_alarms_table_is_that_of_the_monitor() -> None:
     table = {
         name: (limit, latching)
         for name, limit, latching in re.findall(
-            r'^\| `(\w+)` \| ([^|]+) \| (yes|no) \|', README, re.MULTILINE
+            r'^\| `(\w+)` \| ([^|]+) \| (yes|no) \|', ALARMS, re.MULTILINE
         )
     }
     alarms = rows('alarms.csv')
@@ -330,7 +339,7 @@ def test_alarms_table_is_that_of_the_monitor() -> None:
 def test_subject_file_example_is_accepted(tmp_path: Path) -> None:
     from lifting_bringup.bags.subject_file import read_subject_file
 
-    block = re.search(r'^```yaml\n(subject:.*?)^```', README, re.MULTILINE | re.DOTALL)
+    block = re.search(r'^```yaml\n(subject:.*?)^```', RECORDINGS, re.MULTILINE | re.DOTALL)
     assert block is not None
     path = tmp_path / 'person.yaml'
     path.write_text(block[1], encoding='utf-8')
