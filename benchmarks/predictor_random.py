@@ -29,7 +29,7 @@ from benchmarks.solved_lifts import EQUAL
 
 from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.sagittal.verify import verify
-from lift_predictor.core.solvers.optimum import best_objective
+from lift_predictor.core.solvers.solver_run import best_objective
 
 N_TASKS: Final = 200
 SEED: Final = 2026

@@ -30,8 +30,8 @@ from lift_predictor.core.sagittal.starts import make_starts
 from lift_predictor.core.sagittal.task import Box, LiftTask2D, build_task
 from lift_predictor.core.solvers.compiled import build_programme
 from lift_predictor.core.solvers.ipopt import LiftSolver
-from lift_predictor.core.solvers.optimum import Optimum, Start
 from lift_predictor.core.solvers.solve import solve
+from lift_predictor.core.solvers.solver_run import SolverRun, Start
 
 REPEATS: Final = 25
 SUBJECT: Final = 'thesis_ch4'
@@ -45,7 +45,7 @@ WARM_SHIFT: Final = 0.002
 """From one warm solve to the next the mass changes by at most 50 g, the end place by 2 mm."""
 
 
-def timed(run: Callable[[], Optimum], repeats: int) -> tuple[Optimum, float, float]:
+def timed(run: Callable[[], SolverRun], repeats: int) -> tuple[SolverRun, float, float]:
     """Median wall and processor time [ms] of repeated solves, and the last result."""
     wall, processor = [], []
     for _ in range(repeats):
@@ -54,7 +54,7 @@ def timed(run: Callable[[], Optimum], repeats: int) -> tuple[Optimum, float, flo
         wall.append(time.perf_counter() - begin)
         processor.append(time.process_time() - begin_cpu)
     if not result.converged:
-        raise RuntimeError(f'the solve that is timed did not converge: {result.outcome}')
+        raise RuntimeError(f'the solve that is timed did not converge: {result.status}')
     return result, 1e3 * float(np.median(wall)), 1e3 * float(np.median(processor))
 
 

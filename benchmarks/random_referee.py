@@ -26,7 +26,7 @@ from lift_predictor.core.sagittal.grid import LiftBounds
 from lift_predictor.core.sagittal.optimiser import LiftOptimiser
 from lift_predictor.core.solvers.compiled import build_programme
 from lift_predictor.core.solvers.ipopt import LiftSolver
-from lift_predictor.core.solvers.optimum import Start
+from lift_predictor.core.solvers.solver_run import Start
 
 N_STARTS: Final = 20
 MAX_ITERATIONS: Final = 500
@@ -125,7 +125,7 @@ class RefereeStore:
 
     def _key(self, parameters: Array, bounds: LiftBounds, starts: Sequence[Start]) -> str:
         programme = self._optimiser.programme(parameters, bounds)
-        numbers = [programme.lower, programme.upper, programme.row_lower, programme.row_upper]
+        numbers = [programme.lower, programme.upper, programme.g_lower, programme.g_upper]
         for start in starts:
             objective, rows = programme.values(np.append(start.control, bounds.box_mass[0]))
             numbers += [start.control.ravel(), np.array([objective]), rows]

@@ -22,7 +22,7 @@ from human_model.typing import Array
 from lift_predictor.core.sagittal.grid import Grid, LiftBounds
 from lift_predictor.core.sagittal.optimiser import LiftOptimiser
 from lift_predictor.core.sagittal.parameters import JOINTS
-from lift_predictor.core.solvers.optimum import Optimum, Start, best_objective
+from lift_predictor.core.solvers.solver_run import SolverRun, Start, best_objective
 
 SEED: Final = 7
 N_TASKS: Final = 98
@@ -53,7 +53,7 @@ def main() -> None:
     optimiser = LiftOptimiser(GRID)
     rng = np.random.default_rng(SEED)
     tasks: list[tuple[Array, LiftBounds]] = []
-    best: list[Optimum] = []
+    best: list[SolverRun] = []
     own: list[float] = []
     for number in range(N_TASKS):
         _, _, plan = plan_random(rng)

@@ -14,7 +14,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from lift_predictor.core.solvers.spline_programme import SplineProgramme
+from lift_predictor.core.solvers.spline_nlp import SplineNlp
 from lift_predictor.core.spatial.predictor import SpatialPredictor
 from lift_predictor.core.spatial.programme import spatial_assembler, spatial_programme
 from lift_predictor.core.spatial.task import SpatialTask
@@ -85,7 +85,7 @@ class Referee:
             spatial_assembler(predictor.library, predictor.grid), predictor.grid,
             task.parameters, task.bounds,
         )  # fmt: skip
-        a, n, m = p.assembler, p.n, len(p.row_lower)
+        a, n, m = p.assembler, p.n, len(p.g_lower)
         everything = np.arange(m, dtype=np.int32)
         rng = np.random.default_rng(0)
         used = np.zeros((m, n), dtype=bool)
@@ -144,11 +144,11 @@ class Referee:
         self, x0: Any, task: SpatialTask | None = None, before: Refereed | None = None
     ) -> Refereed:
         """Solve, perhaps with the bounds of another task, and from an answer before."""
-        p: SplineProgramme = self.programme
+        p: SplineNlp = self.programme
         if task is not None:
             grid = self._predictor.grid
             p = spatial_programme(p.assembler, grid, task.parameters, task.bounds)
-        bounds = {'lbx': p.lower, 'ubx': p.upper, 'lbg': p.row_lower, 'ubg': p.row_upper}
+        bounds = {'lbx': p.lower, 'ubx': p.upper, 'lbg': p.g_lower, 'ubg': p.g_upper}
         if before is not None:
             x0 = before.x
             bounds |= {'lam_x0': before.multipliers[0], 'lam_g0': before.multipliers[1]}

@@ -50,7 +50,7 @@ class LiftPredictorNode(PipelineNode):
         options = PredictorOptions(**self.values)
         self.predictor = LiftPredictor(options)
         programme = self.predictor.programme
-        self.get_logger().info(f'{programme.how} ({programme.build_time:.2f} s)')
+        self.get_logger().info(f'{programme.backend} ({programme.build_time:.2f} s)')
         self._subject: Subject | None = None
         self._task: Task | None = None
         self._waiting: OrderedDict[str, Lift] = OrderedDict()

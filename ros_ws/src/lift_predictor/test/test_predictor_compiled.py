@@ -38,7 +38,7 @@ def test_cache_directory_follows_the_environment(
 BUILD = """
 from lift_predictor.core.solvers.compiled import build_programme
 from lift_predictor.core.sagittal.grid import Grid
-print(build_programme(Grid(5, 5)).how)
+print(build_programme(Grid(5, 5)).backend)
 """
 
 
@@ -59,7 +59,7 @@ def test_two_processes_build_one_library_with_the_numbers_of_the_virtual_machine
     assert not [path for path in tmp_path.iterdir() if path.is_dir()], 'scratch folder left behind'
 
     fast = build_programme(GRID)
-    assert fast.how == 'compiled functions from the cache'
+    assert fast.backend == 'compiled functions from the cache'
     assert fast.library is not None
     monkeypatch.setenv('CC', str(tmp_path / 'no-such-compiler'))
     slow = build_programme(GRID)
@@ -77,7 +77,9 @@ def test_machine_without_compiler_says_so(monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setenv('CC', '/no/such/compiler')
     programme = build_programme(GRID)
     assert programme.library is None
-    assert programme.how == ("functions run in CasADi's virtual machine: no C compiler was found")
+    assert programme.backend == (
+        "functions run in CasADi's virtual machine: no C compiler was found"
+    )
 
 
 def test_compiler_that_fails_is_quoted(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -90,7 +92,7 @@ def test_compiler_that_fails_is_quoted(monkeypatch: pytest.MonkeyPatch, tmp_path
     monkeypatch.setenv('LIFT_CACHE', str(tmp_path / 'cache'))
     programme = build_programme(GRID)
     assert programme.library is None
-    assert 'compiling failed: disk quota exceeded' in programme.how
+    assert 'compiling failed: disk quota exceeded' in programme.backend
     assert not list((tmp_path / 'cache').glob('*.so'))
 
 
@@ -103,7 +105,7 @@ def test_cache_that_cannot_be_written_is_named(
         pytest.skip('no C compiler on this machine')
     programme = build_programme(GRID)
     assert programme.library is None
-    assert str(tmp_path / 'file') in programme.how
+    assert str(tmp_path / 'file') in programme.backend
 
 
 def test_hash_depends_on_everything_that_goes_in(

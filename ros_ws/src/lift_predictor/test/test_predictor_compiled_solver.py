@@ -26,7 +26,7 @@ from lift_predictor.core.solvers.library import load_library
 from lift_predictor.core.solvers.node_function import NodeFunction
 from lift_predictor.core.solvers.solution import InteriorPointOptions, Status
 from lift_predictor.core.solvers.solve import solve
-from lift_predictor.core.solvers.spline_programme import SplineProgramme, make_assembler
+from lift_predictor.core.solvers.spline_nlp import SplineNlp, make_assembler
 
 pytestmark = pytest.mark.skipif(
     cache.find_compiler() is None, reason='no C compiler on this machine'
@@ -35,10 +35,10 @@ GRID = Grid(7, 25)
 
 
 @pytest.fixture(scope='module')
-def lift(make_lift, person: Person) -> Callable[[float], tuple[SplineProgramme, list[np.ndarray]]]:
+def lift(make_lift, person: Person) -> Callable[[float], tuple[SplineNlp, list[np.ndarray]]]:
     assembler = sagittal_assembler(sagittal_library(), GRID)
 
-    def make(mass: float) -> tuple[SplineProgramme, list[np.ndarray]]:
+    def make(mass: float) -> tuple[SplineNlp, list[np.ndarray]]:
         task = build_task(person, make_lift(mass), Box(mass, 0.238))
         programme = sagittal_programme(assembler, GRID, task.parameters.pack(), task.bounds)
         starts = [
@@ -58,11 +58,11 @@ def test_same_steps_as_the_reference(lift, mass: float) -> None:
         assert fast.iterations == slow.iterations
         assert fast.objective == pytest.approx(slow.objective, rel=1e-9)
         np.testing.assert_allclose(fast.x, slow.x, atol=1e-6)
-        np.testing.assert_allclose(fast.row_multiplier, slow.row_multiplier, atol=1e-5)
-        np.testing.assert_allclose(fast.bound_multiplier, slow.bound_multiplier, atol=1e-5)
+        np.testing.assert_allclose(fast.lam_g, slow.lam_g, atol=1e-5)
+        np.testing.assert_allclose(fast.lam_x, slow.lam_x, atol=1e-5)
         assert max(fast.primal, fast.dual, fast.complementarity) < 1e-6
         point = programme.linearise(fast.x)
-        gradient = point.gradient + point.transposed(fast.row_multiplier) + fast.bound_multiplier
+        gradient = point.gradient + point.transposed(fast.lam_g) + fast.lam_x
         np.testing.assert_allclose(gradient, 0.0, atol=1e-6)
 
 
@@ -119,13 +119,13 @@ def hock_schittkowski() -> list[NodeFunction]:
     return [hs71, circle, double]
 
 
-def small(function: str, n: int, rows, variables, p: float = 0.0) -> SplineProgramme:
+def small(function: str, n: int, rows, variables, p: float = 0.0) -> SplineNlp:
     library = load_library('hock_schittkowski', [Path(__file__)], hock_schittkowski)
     channel = Channel(0, n, np.ones((1, 1, 1)))
     group = Group(function, (channel,), (), len(rows[0]), np.ones(1))
     assembler = make_assembler(library, [group], n)
     bounds = [(np.array(low), np.array(high)) for low, high in (variables, rows)]
-    return SplineProgramme(assembler, np.array([p]), *bounds, lambda i: f'row {i}', str)
+    return SplineNlp(assembler, np.array([p]), *bounds, lambda i: f'row {i}', str)
 
 
 def free(n: int) -> tuple[list[float], list[float]]:

@@ -5,16 +5,97 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import casadi as ca
 import numpy as np
 import pytest
 
+from human_model.typing import Array
 from lift_predictor.core.solvers.interior_point import solve
 from lift_predictor.core.solvers.solution import InteriorPointOptions, Status
-from lift_predictor.core.solvers.symbolic import SymbolicProgramme
 
 INF = np.inf
+
+
+class SymbolicNlp:
+    """Problem of f(x) and g(x) with dense derivatives, run in CasADi's virtual machine.
+
+    Parameters
+    ----------
+    objective : callable
+        Expression of f from a list of n symbols.
+    constraints : callable
+        Expressions of the constraints from the same.
+    variables : pair of array, shape (n,)
+        Lower and upper bounds of the variables.
+    g_bounds : pair of array, shape (m,)
+        Lower and upper bounds of the constraints.
+    """
+
+    def __init__(
+        self,
+        objective: Callable[[list[Any]], Any],
+        constraints: Callable[[list[Any]], list[Any]],
+        variables: tuple[Any, Any],
+        g_bounds: tuple[Any, Any],
+    ) -> None:
+        self.lower, self.upper = (np.array(b, dtype=float) for b in variables)
+        self.g_lower, self.g_upper = (np.array(b, dtype=float) for b in g_bounds)
+        self.n = len(self.lower)
+        x = ca.SX.sym('x', self.n)
+        parts = [x[i] for i in range(self.n)]
+        f, g = ca.SX(objective(parts)), ca.SX(ca.vertcat(*constraints(parts)))
+        sigma, y = ca.SX.sym('sigma'), ca.SX.sym('y', len(self.g_lower))
+        lagrangian = sigma * f + ca.dot(y, g)
+        self._values = ca.Function('values', [x], [f, g])
+        self._first = ca.Function('first', [x], [f, g, ca.gradient(f, x), ca.jacobian(g, x)])
+        self._second = ca.Function('second', [x, sigma, y], [ca.hessian(lagrangian, x)[0]])
+
+    def constraint_name(self, index: int) -> str:
+        """Row and its number."""
+        return f'constraint {index}'
+
+    def variable_name(self, index: int) -> str:
+        """Letter and number."""
+        return f'x{index}'
+
+    def values(self, x: Array) -> tuple[float, Array]:
+        """Objective and constraints."""
+        f, g = self._values(x)
+        return float(f), np.asarray(g).ravel()
+
+    def linearise(self, x: Array) -> SymbolicPoint:
+        """First derivatives."""
+        return SymbolicPoint(self, x)
+
+    def hessian(self, x: Array, sigma: float, multiplier: Array) -> Array:
+        """Hessian of the Lagrangian (n, n)."""
+        return np.asarray(self._second(x, sigma, multiplier))
+
+
+class SymbolicPoint:
+    """Dense derivatives of a `SymbolicNlp`."""
+
+    def __init__(self, problem: SymbolicNlp, x: Array) -> None:
+        self._problem, self._x = problem, np.array(x)
+        f, g, gradient, jacobian = problem._first(x)
+        self.objective, self.g = float(f), np.asarray(g).ravel()
+        self.gradient, self.jacobian = np.asarray(gradient).ravel(), np.asarray(jacobian)
+        self.equality = self.jacobian[problem.g_lower == problem.g_upper]
+
+    def times(self, step: Array) -> Array:
+        """Jacobian times a step."""
+        return np.asarray(self.jacobian @ step)
+
+    def transposed(self, multiplier: Array) -> Array:
+        """Transposed Jacobian times multipliers."""
+        return np.asarray(self.jacobian.T @ multiplier)
+
+    def condensed(self, sigma: float, multiplier: Array, weight: Array) -> Array:
+        """Hessian of the Lagrangian and weighted squares of the constraints."""
+        hessian = self._problem.hessian(self._x, sigma, multiplier)
+        return np.asarray(hessian + (self.jacobian.T * weight) @ self.jacobian)
 
 
 def free(n: int) -> tuple[list[float], list[float]]:
@@ -126,25 +207,23 @@ PROBLEMS: dict[str, tuple[Callable, Callable, tuple, tuple, list[float], float]]
 """Objective, rows, bounds, row bounds, start and minimum as published."""
 
 
-def problem(name: str) -> tuple[SymbolicProgramme, np.ndarray, float]:
+def published(name: str) -> tuple[SymbolicNlp, np.ndarray, float]:
     f, g, bounds, rows, start, optimum = PROBLEMS[name]
-    return SymbolicProgramme(f, g, bounds, rows), np.array(start), optimum
+    return SymbolicNlp(f, g, bounds, rows), np.array(start), optimum
 
 
 @pytest.mark.parametrize('name', PROBLEMS)
 def test_published_minimum(name: str) -> None:
-    programme, x0, optimum = problem(name)
-    solution = solve(programme, x0)
+    problem, x0, optimum = published(name)
+    solution = solve(problem, x0)
     assert solution.status is Status.OPTIMAL
     assert solution.objective == pytest.approx(optimum, rel=2e-7, abs=2e-7)
     assert solution.primal < 1e-6
     assert solution.dual < 1e-5
     assert solution.complementarity < 1e-6
     assert solution.iterations < 60
-    point = programme.linearise(solution.x)
-    stationarity = (
-        point.gradient + point.jacobian.T @ solution.row_multiplier + solution.bound_multiplier
-    )
+    point = problem.linearise(solution.x)
+    stationarity = point.gradient + point.jacobian.T @ solution.lam_g + solution.lam_x
     np.testing.assert_allclose(stationarity, 0.0, atol=1e-5)
 
 
@@ -154,34 +233,32 @@ def rosenbrock(x: list) -> ca.SX:
 
 def test_rosenbrock_inside_a_disc() -> None:
     """The unconstrained minimum (1, 1) is outside x^2 + y^2 <= 1."""
-    programme = SymbolicProgramme(
-        rosenbrock, lambda x: [x[0] ** 2 + x[1] ** 2], free(2), ([-INF], [1.0])
-    )
-    solution = solve(programme, np.array([-1.2, 1.0]))
+    problem = SymbolicNlp(rosenbrock, lambda x: [x[0] ** 2 + x[1] ** 2], free(2), ([-INF], [1.0]))
+    solution = solve(problem, np.array([-1.2, 1.0]))
     assert solution.ok
     grid = np.linspace(0.0, 0.5 * np.pi, 200001)
     on_circle = rosenbrock([np.cos(grid), np.sin(grid)]).min()
     assert solution.objective == pytest.approx(on_circle, abs=1e-7)
-    assert solution.row_multiplier[0] > 0.0
+    assert solution.lam_g[0] > 0.0
 
 
 def test_fixed_variable_is_kept_and_has_its_sensitivity() -> None:
-    programme = SymbolicProgramme(
+    problem = SymbolicNlp(
         rosenbrock, lambda x: [x[0] + x[1]], ([0.5, -INF], [0.5, INF]), ([-INF], [10.0])
     )
-    solution = solve(programme, np.array([3.0, 3.0]))
+    solution = solve(problem, np.array([3.0, 3.0]))
     assert solution.ok
     np.testing.assert_allclose(solution.x, [0.5, 0.25], atol=1e-6)
-    assert solution.bound_multiplier[0] == pytest.approx(1.0, abs=1e-4)
+    assert solution.lam_x[0] == pytest.approx(1.0, abs=1e-4)
 
 
 def test_dependent_equality_rows_are_solved() -> None:
-    programme = SymbolicProgramme(
+    problem = SymbolicNlp(
         lambda x: x[0] ** 2 + x[1] ** 2,
         lambda x: [x[0] + x[1] - 1, 2 * x[0] + 2 * x[1] - 2],
         free(2), zero(2),
     )  # fmt: skip
-    solution = solve(programme, np.array([3.0, -1.0]))
+    solution = solve(problem, np.array([3.0, -1.0]))
     assert solution.ok
     np.testing.assert_allclose(solution.x, 0.5, atol=1e-6)
 
@@ -201,27 +278,27 @@ def test_dependent_equality_rows_are_solved() -> None:
     ids=['disc and half-plane', 'empty circle', 'three half-planes'],
 )
 def test_infeasible_problem_is_detected_and_named(rows, bounds, worst, violation) -> None:
-    programme = SymbolicProgramme(lambda x: x[0] + x[1] ** 2, rows, free(2), bounds)
-    solution = solve(programme, np.array([0.3, 0.2]))
+    problem = SymbolicNlp(lambda x: x[0] + x[1] ** 2, rows, free(2), bounds)
+    solution = solve(problem, np.array([0.3, 0.2]))
     assert solution.status is Status.INFEASIBLE
     assert solution.iterations < 100
     assert solution.violated[0][1] > violation
-    assert {name for name, _ in solution.violated} <= {f'row {i}' for i in worst}
+    assert {name for name, _ in solution.violated} <= {f'constraint {i}' for i in worst}
 
 
 def test_functions_not_defined_on_the_way_are_avoided() -> None:
-    programme = SymbolicProgramme(
+    problem = SymbolicNlp(
         lambda x: -ca.log(x[0]) + 10 * x[0], lambda x: [ca.sqrt(x[0])], free(1), ([0.1], [INF])
     )
-    solution = solve(programme, np.array([5.0]))
+    solution = solve(problem, np.array([5.0]))
     assert solution.ok
     assert solution.x[0] == pytest.approx(0.1, abs=1e-7)
-    assert solve(programme, np.array([-1.0])).status is Status.NOT_FINITE
+    assert solve(problem, np.array([-1.0])).status is Status.NOT_FINITE
 
 
 def test_iteration_limit_is_kept() -> None:
-    programme, x0, _ = problem('HS113')
-    solution = solve(programme, x0, InteriorPointOptions(max_iterations=3))
+    problem, x0, _ = published('HS113')
+    solution = solve(problem, x0, InteriorPointOptions(max_iterations=3))
     assert solution.status is Status.ITERATION_LIMIT
     assert solution.iterations == 3
     assert not solution.ok
@@ -229,16 +306,16 @@ def test_iteration_limit_is_kept() -> None:
 
 @pytest.mark.parametrize('name', ['HS71', 'HS100', 'HS113', 'HS65'])
 def test_warm_start_needs_fewer_iterations(name: str) -> None:
-    programme, x0, _ = problem(name)
-    cold = solve(programme, x0)
-    again = solve(programme, cold.x, warm=cold)
+    problem, x0, _ = published(name)
+    cold = solve(problem, x0)
+    again = solve(problem, cold.x, warm=cold)
     assert again.ok
     assert again.objective == pytest.approx(cold.objective, rel=1e-7)
     assert again.iterations < 0.75 * cold.iterations
 
 
 def test_same_start_gives_the_same_numbers() -> None:
-    programme, x0, _ = problem('HS100')
-    one, two = solve(programme, x0), solve(programme, x0)
+    problem, x0, _ = published('HS100')
+    one, two = solve(problem, x0), solve(problem, x0)
     np.testing.assert_array_equal(one.x, two.x)
     assert one.iterations == two.iterations

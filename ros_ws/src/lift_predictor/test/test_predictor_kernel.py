@@ -25,7 +25,7 @@ from lift_predictor.core.solvers import cache, library
 from lift_predictor.core.solvers.layout import Channel, Group
 from lift_predictor.core.solvers.library import NodeLibrary, load_library
 from lift_predictor.core.solvers.node_function import NodeFunction
-from lift_predictor.core.solvers.spline_programme import SplineProgramme, make_assembler
+from lift_predictor.core.solvers.spline_nlp import SplineNlp, make_assembler
 
 needs_compiler = pytest.mark.skipif(
     cache.find_compiler() is None, reason='no C compiler on this machine'
@@ -52,7 +52,7 @@ def every_operation() -> list[NodeFunction]:
     return [NodeFunction('all', z, s, p, rows, cost), report]
 
 
-def programme_of(functions: NodeLibrary, n_points: int) -> SplineProgramme:
+def programme_of(functions: NodeLibrary, n_points: int) -> SplineNlp:
     """Two components on a spline of 6 control points, one free value at each instant."""
     spline = Grid(8, 11).spline
     times = np.linspace(0.0, 1.0, n_points)
@@ -66,7 +66,7 @@ def programme_of(functions: NodeLibrary, n_points: int) -> SplineProgramme:
     high = np.where(np.arange(assembler.m) % 5 == 0, low, 1.0)
     free = np.full(n, -np.inf), np.full(n, np.inf)
     p = np.array([0.3, 0.1, 1.0])
-    return SplineProgramme(assembler, p, free, (low, high), lambda i: f'row {i}', str)
+    return SplineNlp(assembler, p, free, (low, high), lambda i: f'row {i}', str)
 
 
 def loaded(monkeypatch: pytest.MonkeyPatch, folder: Path, compiler: bool) -> NodeLibrary:
@@ -90,13 +90,13 @@ def test_all_operations_and_channels_agree_with_the_virtual_machine(
     slow = programme_of(loaded(monkeypatch, tmp_path, False), n_points)
     rng = np.random.default_rng(5)
     x = rng.uniform(-2.0, 2.0, fast.n)
-    m = len(fast.row_lower)
+    m = len(fast.g_lower)
     step, y, weight = rng.normal(size=fast.n), rng.normal(size=m), rng.uniform(size=m)
     one, two = fast.linearise(x), slow.linearise(x)
     close = {'rtol': 1e-12, 'atol': 1e-12}
     assert fast.values(x)[0] == pytest.approx(slow.values(x)[0], rel=1e-13)
     np.testing.assert_allclose(fast.values(x)[1], slow.values(x)[1], **close)
-    np.testing.assert_allclose(one.rows, two.rows, **close)
+    np.testing.assert_allclose(one.g, two.g, **close)
     np.testing.assert_allclose(one.gradient, two.gradient, **close)
     np.testing.assert_allclose(one.equality, two.equality, **close)
     np.testing.assert_allclose(one.times(step), two.times(step), **close)
@@ -134,7 +134,7 @@ def test_sagittal_programme_is_the_one_of_ipopt(
     g, jacobian = (np.asarray(value) for value in functions['nlp_jac_g'](x, p))
     point = programme.linearise(x)
     assert point.objective == pytest.approx(float(f), rel=1e-12)
-    np.testing.assert_allclose(point.rows, g.ravel(), rtol=1e-11, atol=1e-11)
+    np.testing.assert_allclose(point.g, g.ravel(), rtol=1e-11, atol=1e-11)
     gradient = np.asarray(gradient).ravel()
     np.testing.assert_allclose(point.gradient, gradient, rtol=1e-10, atol=1e-11)
     step, y, weight = rng.normal(size=grid.n_variables), rng.normal(size=m), rng.uniform(size=m)
@@ -178,7 +178,7 @@ def test_library_in_the_cache_loads_without_casadi(sagittal: NodeLibrary) -> Non
     code = (
         'import sys\n'
         'from lift_predictor.core.sagittal.programme import sagittal_library\n'
-        'print(sagittal_library().how)\n'
+        'print(sagittal_library().backend)\n'
         "print([name for name in ('casadi', 'scipy', 'numba') if name in sys.modules])\n"
     )
     assert sagittal.compiled is not None
@@ -210,4 +210,4 @@ def test_hash_of_a_library_depends_on_processor_flags_and_sources(
 def test_no_compiler_is_said(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     slow = loaded(monkeypatch, tmp_path, False)
     assert slow.compiled is None
-    assert slow.how == "functions run in CasADi's virtual machine: no C compiler was found"
+    assert slow.backend == "functions run in CasADi's virtual machine: no C compiler was found"

@@ -21,7 +21,7 @@ from lift_predictor.core.sagittal.task import Box, build_task
 from lift_predictor.core.sagittal.verify import TOLERANCE
 from lift_predictor.core.solvers.compiled import build_programme
 from lift_predictor.core.solvers.ipopt import LiftSolver
-from lift_predictor.core.solvers.optimum import Start
+from lift_predictor.core.solvers.solver_run import Start
 
 MASSES = (0.0, 7.0, 12.0)
 
@@ -64,7 +64,7 @@ def test_random_starts_find_nothing_better(outcome, predictor, person, mass) -> 
         for k in range(5)
     ]
     solved = [run.objective for run in runs if run.converged]
-    assert solved, [run.outcome for run in runs]
+    assert solved, [run.status for run in runs]
     best = min(run.objective for run in result.predicted.optima[-3:] if run.converged)
     assert best <= min(solved) * 1.001
 

@@ -15,7 +15,7 @@ from lift_predictor.core.exceptions import TaskError
 from lift_predictor.core.maximum_weight import (
     LARGEST_WEIGHT,
     POSTURE_TOLERANCES,
-    TIE_BREAK,
+    REGULARISATION,
     MaximumWeight,
     Weighting,
     heaviest_box,
@@ -27,7 +27,7 @@ from lift_predictor.core.sagittal.starts import make_starts
 from lift_predictor.core.sagittal.task import Box, build_task
 from lift_predictor.core.solvers.compiled import build_programme
 from lift_predictor.core.solvers.ipopt import LiftSolver
-from lift_predictor.core.solvers.optimum import Start
+from lift_predictor.core.solvers.solver_run import Start
 
 DEPTH = 0.238
 BOX = Box(7.0, DEPTH)
@@ -128,7 +128,7 @@ def test_the_tie_break_costs_next_to_nothing(predictor, open_task, solve) -> Non
     pure = referee.solve_all(vector, task.bounds, starts)[0]
     assert pure.converged
     first = solve(0.0).prediction.optima[-len(starts)]
-    assert TIE_BREAK > 0.0
+    assert REGULARISATION > 0.0
     assert first.box_mass == pytest.approx(pure.box_mass, rel=5e-4)
     assert first.box_mass <= pure.box_mass * (1.0 + 1e-6)
 
@@ -138,7 +138,7 @@ def test_random_starts_find_no_heavier_box(predictor, open_task, solve) -> None:
     person = task.person
     rng = np.random.default_rng(3)
     shape = (predictor.programme.grid.spline.n_free, 6)
-    vector = replace(task.parameters, objective=np.array([TIE_BREAK, 1.0])).pack()
+    vector = replace(task.parameters, objective=np.array([REGULARISATION, 1.0])).pack()
     solver = LiftSolver(build_programme(predictor.programme.grid), 20.0)
     masses = []
     for k in range(5):

@@ -17,8 +17,8 @@ from lift_predictor.core.sagittal.starts import make_starts
 from lift_predictor.core.sagittal.task import Box, LiftTask2D, build_task
 from lift_predictor.core.solvers.compiled import build_programme
 from lift_predictor.core.solvers.ipopt import LiftSolver
-from lift_predictor.core.solvers.optimum import Start
 from lift_predictor.core.solvers.solution import InteriorPointOptions, Status
+from lift_predictor.core.solvers.solver_run import Start
 
 GRID = Grid(7, 25)
 
@@ -48,8 +48,8 @@ def test_same_minimum_and_binding_limits_as_ipopt(optimiser, referee, task, mass
         assert own.converged and other.converged
         assert own.objective == pytest.approx(other.objective, rel=1e-6)
         np.testing.assert_allclose(own.control, other.control, atol=1e-3)
-        strong = {name: size for name, size in other.binding if size > 1e-3}
-        found = dict(own.binding)
+        strong = {name: size for name, size in other.active_constraints if size > 1e-3}
+        found = dict(own.active_constraints)
         for name, size in strong.items():
             assert found[name] == pytest.approx(size, rel=0.05)
 
@@ -85,7 +85,7 @@ def test_ipopt_is_tried_and_named_where_no_start_gives_an_answer(
     runs = optimiser.solve_all(lift.parameters.pack(), lift.bounds, starts)
     assert runs[0].converged
     assert runs[0].start.endswith(', IPOPT')
-    assert [run.outcome for run in runs[2:]] == [Status.ITERATION_LIMIT] * 2
+    assert [run.status for run in runs[2:]] == [Status.ITERATION_LIMIT] * 2
 
 
 def test_infeasible_lift_is_not_given_to_ipopt(
@@ -95,5 +95,5 @@ def test_infeasible_lift_is_not_given_to_ipopt(
     starts = make_starts(lift, GRID.spline)
     runs = optimiser.solve_all(lift.parameters.pack(), lift.bounds, starts)
     assert len(runs) == len(starts)
-    assert {run.outcome for run in runs} == {Status.INFEASIBLE}
+    assert {run.status for run in runs} == {Status.INFEASIBLE}
     assert 'joint torque limit' in runs[0].violated

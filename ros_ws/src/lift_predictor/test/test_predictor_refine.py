@@ -19,7 +19,7 @@ from lift_predictor.core.sagittal.grid import Grid
 from lift_predictor.core.sagittal.person import Person
 from lift_predictor.core.sagittal.refine import Refiner
 from lift_predictor.core.sagittal.verify import verify
-from lift_predictor.core.solvers.optimum import best_objective
+from lift_predictor.core.solvers.solver_run import best_objective
 
 BETWEEN_NODES = {
     'margins have no room at the collision circles': (

@@ -91,7 +91,7 @@ def test_a_run_ends_at_the_deadline(task) -> None:
     start = make_starts(task, optimiser.grid.spline)[0]
     vector = task.parameters.pack()
     run = optimiser.solve(vector, task.bounds, start, deadline=time.perf_counter() - 1.0)
-    assert run.outcome is Status.TIME_LIMIT
+    assert run.status is Status.TIME_LIMIT
     assert run.iterations == 0
     assert not run.converged
 

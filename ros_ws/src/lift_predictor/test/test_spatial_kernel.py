@@ -15,7 +15,7 @@ from lift_predictor.core.solvers import cache
 from lift_predictor.core.solvers.layout import Channel, Group
 from lift_predictor.core.solvers.library import load_library
 from lift_predictor.core.solvers.node_function import NodeFunction
-from lift_predictor.core.solvers.spline_programme import make_assembler
+from lift_predictor.core.solvers.spline_nlp import make_assembler
 from lift_predictor.core.solvers.sweeps import SweptFunction
 from lift_predictor.core.spatial.frame import StanceFrame
 from lift_predictor.core.spatial.grid import SpatialGrid
@@ -57,7 +57,7 @@ def assemblers(tmp_path_factory):
         ('written', lambda: [small(NodeFunction)]),
     ):
         library = load_library(name, [Path(__file__)], make)
-        assert library.compiled is not None, library.how
+        assert library.compiled is not None, library.backend
         made.append(make_assembler(library, [group], 7))
     patch.undo()
     return made

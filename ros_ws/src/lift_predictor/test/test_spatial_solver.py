@@ -12,7 +12,7 @@ import pytest
 from lift_predictor.core.solvers import cache, interior_point
 from lift_predictor.core.solvers.solution import InteriorPointOptions, Status
 from lift_predictor.core.solvers.solve import solve
-from lift_predictor.core.solvers.spline_programme import SplineProgramme
+from lift_predictor.core.solvers.spline_nlp import SplineNlp
 from lift_predictor.core.spatial.grid import SpatialGrid
 from lift_predictor.core.spatial.postures import PostureFinder
 from lift_predictor.core.spatial.predictor import SpatialOptions
@@ -30,7 +30,7 @@ OPTIONS = SpatialOptions().interior_point()
 
 
 @pytest.fixture(scope='module')
-def lift(placed) -> tuple[SplineProgramme, np.ndarray]:
+def lift(placed) -> tuple[SplineNlp, np.ndarray]:
     task, library = placed(GRID, 7.0), spatial_library()
     start = PostureFinder(library).starts(task, GRID, guesses=1)[0]
     programme = spatial_programme(
@@ -47,10 +47,8 @@ def test_same_iterates_as_the_reference(lift) -> None:
     assert fast.iterations == slow.iterations == 10
     assert fast.objective == pytest.approx(slow.objective, rel=1e-8)
     np.testing.assert_allclose(fast.x, slow.x, atol=1e-7)
-    largest = np.abs(slow.row_multiplier).max()
-    np.testing.assert_allclose(
-        fast.row_multiplier, slow.row_multiplier, atol=1e-6 * max(largest, 1.0)
-    )
+    largest = np.abs(slow.lam_g).max()
+    np.testing.assert_allclose(fast.lam_g, slow.lam_g, atol=1e-6 * max(largest, 1.0))
 
 
 def test_same_optimum_as_the_reference_also_from_a_warm_start(lift) -> None:
@@ -61,8 +59,8 @@ def test_same_optimum_as_the_reference_also_from_a_warm_start(lift) -> None:
     for solution in (fast, slow):
         assert max(solution.primal, solution.dual, solution.complementarity) < 1e-6
         point = programme.linearise(solution.x)
-        slope = point.gradient + point.transposed(solution.row_multiplier)
-        np.testing.assert_allclose(slope + solution.bound_multiplier, 0.0, atol=1e-6)
+        slope = point.gradient + point.transposed(solution.lam_g)
+        np.testing.assert_allclose(slope + solution.lam_x, 0.0, atol=1e-6)
     again = solve(programme, fast.x, OPTIONS, fast)
     same = interior_point.solve(programme, fast.x, OPTIONS, fast)
     assert again.status is same.status is Status.OPTIMAL

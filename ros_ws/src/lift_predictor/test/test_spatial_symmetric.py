@@ -14,9 +14,9 @@ from lift_predictor.core.sagittal.evaluation import evaluate as evaluate_2d
 from lift_predictor.core.sagittal.grid import LiftBounds
 from lift_predictor.core.sagittal.parameters import JOINTS
 from lift_predictor.core.sagittal.person import Person
-from lift_predictor.core.solvers.optimum import Start
 from lift_predictor.core.solvers.solution import InteriorPointOptions
 from lift_predictor.core.solvers.solve import solve
+from lift_predictor.core.solvers.solver_run import Start
 from lift_predictor.core.spatial.evaluation import evaluate
 from lift_predictor.core.spatial.frame import StanceFrame
 from lift_predictor.core.spatial.grid import LIMITED, WAY_ROWS, SpatialGrid, row_slice

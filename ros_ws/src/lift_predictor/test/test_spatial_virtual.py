@@ -34,7 +34,7 @@ class Virtual:
 
     def __init__(self, function) -> None:
         zs, p = ca.vertcat(function.z, function.s), function.p
-        out = ca.vertcat(ca.SX(function.cost), function.rows)
+        out = ca.vertcat(ca.SX(function.cost), function.g)
         step, y = ca.SX.sym('step', zs.numel()), ca.SX.sym('y', out.numel())
         weight = ca.SX.sym('weight', out.numel())
         slope = ca.gradient(ca.dot(y, out), zs)
@@ -74,7 +74,7 @@ class Reference:
         """Numbers of the rows by node, those of the cost in front."""
         parts, at = [], 0
         for group in self.groups:
-            count = group.n_points * group.n_rows
+            count = group.n_points * group.n_g
             cost = first * group.cost_weight[:, None]
             parts.append(np.hstack((cost, rows[at : at + count].reshape(group.n_points, -1))))
             at += count

@@ -15,7 +15,7 @@ from human_model.errors import HumanModelError
 from human_model.motion import Lift
 from human_model.report import SolveReport, SolveStatus
 from lift_predictor.core.exceptions import TaskError, UnreachableError
-from lift_predictor.core.nearest_lift import TIE_BREAK
+from lift_predictor.core.nearest_lift import REGULARISATION
 from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.sagittal.comparison import LiftComparison
 from lift_predictor.core.sagittal.evaluation import total_effort
@@ -23,7 +23,7 @@ from lift_predictor.core.sagittal.grid import WEIGHT_OFFSET
 from lift_predictor.core.sagittal.prediction import PredictedLift2D
 from lift_predictor.core.sagittal.starts import make_starts
 from lift_predictor.core.sagittal.task import Box, LiftTask2D, build_task
-from lift_predictor.core.solvers.optimum import Progress, Start
+from lift_predictor.core.solvers.solver_run import Progress, Start
 
 POSTURE_TOLERANCES: Final = (0.1, 0.15, 0.1)
 """Epsilon of equation 2.23 at 0, T/2 and T [rad]."""
@@ -243,7 +243,7 @@ def heaviest_box(
     Parameters are those of `solve_maximum_weight`.
     """
     weighting = Weighting(0.0, 1.0)
-    pure = _with_objective(task, (TIE_BREAK, 1.0))
+    pure = _with_objective(task, (REGULARISATION, 1.0))
     begun = [_with_mass(start, task.parameters.box_mass) for start in starts]
     prediction, comparison = predictor.solve_and_compare(pure, begun, progress)
     return _result(predictor, pure, weighting, None, prediction, comparison)
@@ -281,7 +281,7 @@ def _result(
         weight=weight,
         effort=effort,
         normalisation=scale or own,
-        binding=tuple(name for name, _ in best.binding),
+        binding=tuple(name for name, _ in best.active_constraints),
         comparison=comparison,
     )
 

@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 
 P = TypeVar('P', 'PredictedLift2D', 'PredictedLift3D')
 
-TIE_BREAK: Final = 1e-4
+REGULARISATION: Final = 1e-4
 """Factor of the effort [1/s] where the weight alone is maximised: it decides between the lifts of
 the same weight, which differ in effort, and costs less than 0.05 % of the weight."""
 PLACE_TOLERANCE: Final = 5e-3
 """Distance [m] to which the nearest place is found."""
 ALL: Final = 0.999
 """Share of a mass that counts as all of it."""
-HOPELESS: Final = (
+INFEASIBLE_STATUSES: Final = (
     SolveStatus.PREDICTOR_INFEASIBLE,
     SolveStatus.PREDICTOR_UNREACHABLE,
     SolveStatus.PREDICTOR_NOT_CONVERGED,

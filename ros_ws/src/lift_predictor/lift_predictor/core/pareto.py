@@ -25,7 +25,7 @@ from lift_predictor.core.maximum_weight import (
 )
 from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.sagittal.task import LiftTask2D
-from lift_predictor.core.solvers.optimum import Start
+from lift_predictor.core.solvers.solver_run import Start
 
 N_CASES: Final = 21
 """Pareto cases of section 2.5: w1 grows by 0.05."""

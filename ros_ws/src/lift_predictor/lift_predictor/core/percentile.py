@@ -32,7 +32,7 @@ from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.sagittal.person import Person
 from lift_predictor.core.sagittal.starts import make_starts
 from lift_predictor.core.sagittal.task import Box, LiftTask2D
-from lift_predictor.core.solvers.optimum import Start
+from lift_predictor.core.solvers.solver_run import Start
 
 Z_STEP: Final = 0.05
 """Step of the enumeration: the dissertation gives its z-score (1.05) to this step."""

@@ -18,7 +18,12 @@ from human_model.report import SolveReport, SolveStatus
 from human_model.subject import Subject
 from human_model.typing import Array
 from lift_predictor.core.exceptions import AsymmetricLiftError, TaskError, UnreachableError
-from lift_predictor.core.nearest_lift import HOPELESS, NearestLift, closer_lift, with_nearest
+from lift_predictor.core.nearest_lift import (
+    INFEASIBLE_STATUSES,
+    NearestLift,
+    closer_lift,
+    with_nearest,
+)
 from lift_predictor.core.options import IN_THE_PLANE, PredictorOptions
 from lift_predictor.core.sagittal.comparison import LiftComparison, compare
 from lift_predictor.core.sagittal.evaluation import evaluate, sample, total_effort
@@ -34,7 +39,7 @@ from lift_predictor.core.sagittal.starts import make_starts
 from lift_predictor.core.sagittal.task import Box, LiftTask2D, build_task
 from lift_predictor.core.sagittal.verify import Verification
 from lift_predictor.core.sampling import sample_times
-from lift_predictor.core.solvers.optimum import Optimum, Progress, Start
+from lift_predictor.core.solvers.solver_run import Progress, SolverRun, Start
 from lift_predictor.core.solvers.stop import StopFlag
 
 if TYPE_CHECKING:
@@ -122,7 +127,7 @@ class LiftPredictor:
             failed, comparison = self._attempt(lift, box, progress)
         except AsymmetricLiftError:
             return self.spatial().predict_and_compare(lift, box, progress)
-        if failed.report.status not in HOPELESS:
+        if failed.report.status not in INFEASIBLE_STATUSES:
             return failed, comparison
         return self._explained(failed, lift, box), None
 
@@ -228,14 +233,14 @@ class LiftPredictor:
         optima, check = self._refiner.refine(task, vector, optima, deadline)
         status, message = judge(optima[0], check)
         nearest: NearestLift[PredictedLift2D] | None = None
-        if status in HOPELESS:
+        if status in INFEASIBLE_STATUSES:
             runs, second, nearest = self._over_lighter(task, vector, given, deadline)
             solved = second is not None and second.passed
             optima = (*runs, *optima) if solved else (optima[0], *runs, *optima[1:])
             if solved:
                 check = second
                 status, message = judge(optima[0], check)
-        notes = (*task.notes, self.programme.how)
+        notes = (*task.notes, self.programme.backend)
         report = SolveReport(
             status,
             '; '.join((message, *notes)),
@@ -256,7 +261,7 @@ class LiftPredictor:
 
     def _over_lighter(
         self, task: LiftTask2D, vector: Array, starts: Sequence[Start], deadline: float
-    ) -> tuple[tuple[Optimum, ...], Verification | None, NearestLift[PredictedLift2D] | None]:
+    ) -> tuple[tuple[SolverRun, ...], Verification | None, NearestLift[PredictedLift2D] | None]:
         """Seek a lift that no start led to over lifts of less mass; or the nearest such lift."""
 
         def solve_lighter(other: LiftTask2D, starts: Sequence[Start]) -> PredictedLift2D:
@@ -277,7 +282,7 @@ class LiftPredictor:
         self,
         task: LiftTask2D,
         report: SolveReport,
-        optima: tuple[Optimum, ...],
+        optima: tuple[SolverRun, ...],
         check: Verification | None,
         notes: tuple[str, ...],
     ) -> tuple[PredictedLift2D, LiftComparison | None]:

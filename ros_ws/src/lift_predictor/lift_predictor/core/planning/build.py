@@ -21,7 +21,7 @@ from lift_predictor.core.sagittal.person import Person
 from lift_predictor.core.sagittal.plane import SagittalPlane
 from lift_predictor.core.sagittal.starts import make_starts
 from lift_predictor.core.sagittal.task import POSTURE_TOLERANCE, LiftTask2D, lowest_grip
-from lift_predictor.core.solvers.optimum import Start
+from lift_predictor.core.solvers.solver_run import Start
 from lift_predictor.core.solvers.stop import StopFlag
 
 SAME_POSTURE: Final = 0.02

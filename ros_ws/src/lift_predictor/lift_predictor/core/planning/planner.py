@@ -12,7 +12,7 @@ from human_model.report import SolveReport, SolveStatus
 from human_model.subject import Subject
 from lift_predictor.core.exceptions import TaskError, UnreachableError
 from lift_predictor.core.maximum_weight import Weighting
-from lift_predictor.core.nearest_lift import HOPELESS, with_nearest
+from lift_predictor.core.nearest_lift import INFEASIBLE_STATUSES, with_nearest
 from lift_predictor.core.planning.feet import Placement, place_feet
 from lift_predictor.core.planning.nearest import nearest_plan
 from lift_predictor.core.planning.plan_task import PlanTask
@@ -80,7 +80,7 @@ class LiftPlanner:
             return plan_in_space(self.predictor, subject, task, weights, listener)
         planned = self._sagittal(subject, task, listener, weights)
         failed = planned.prediction
-        if failed.report.status not in HOPELESS:
+        if failed.report.status not in INFEASIBLE_STATUSES:
             return planned
         nearest = failed.nearest
         if nearest is None:

@@ -18,7 +18,7 @@ from lift_predictor.core.planning.technique import stoop_squat_index, technique
 from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.sagittal.prediction import PredictedLift2D
 from lift_predictor.core.sagittal.task import POSTURE_TOLERANCE
-from lift_predictor.core.solvers.optimum import Start
+from lift_predictor.core.solvers.solver_run import Start
 
 WINDOW_HALVINGS: Final = 4
 """How often the posture window is halved where the optimum leaves the technique's range; the
@@ -150,7 +150,7 @@ def solve_plan(
             f'task.technique: the best lift grasps the box with a Stoop-Squat-Index of '
             f'{index:.0f}; {style.name} is {style.lower:g} to {style.upper:g}'
         )
-    binding = tuple(dict.fromkeys(name for name, _ in best.binding))
+    binding = tuple(dict.fromkeys(name for name, _ in best.active_constraints))
     return SolvedPlan(plan, prediction, index, binding, value)
 
 

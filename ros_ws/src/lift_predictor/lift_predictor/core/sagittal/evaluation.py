@@ -27,7 +27,7 @@ class SagittalLoads:
         Zero-moment point, forward [m].
     hand_force : array, shape (n, 2)
         Force of the box on both hands [N].
-    rows : array, shape (n, n_rows)
+    rows : array, shape (n, n_g)
         Scaled constraints of `node_functions.NODE_ROWS`.
     effort : array, shape (n,)
         Integrand of the first term of equation 2.11.

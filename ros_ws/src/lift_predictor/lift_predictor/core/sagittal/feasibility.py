@@ -17,10 +17,10 @@ import numpy as np
 
 from human_model.typing import Array
 from lift_predictor.core.exceptions import TaskError
-from lift_predictor.core.nearest_lift import TIE_BREAK, NearestLift, lighter
+from lift_predictor.core.nearest_lift import REGULARISATION, NearestLift, lighter
 from lift_predictor.core.sagittal.prediction import PredictedLift2D
 from lift_predictor.core.sagittal.task import INSTANTS, Box, LiftTask2D
-from lift_predictor.core.solvers.optimum import Start
+from lift_predictor.core.solvers.solver_run import Start
 
 Solve = Callable[[LiftTask2D, Sequence[Start]], PredictedLift2D]
 
@@ -47,7 +47,7 @@ def largest_mass(
     least, asked = task.bounds.box_mass
     if asked == 0.0 or least < asked:
         return None
-    parameters = replace(task.parameters, objective=np.array([TIE_BREAK, 1.0]))
+    parameters = replace(task.parameters, objective=np.array([REGULARISATION, 1.0]))
     bounds = replace(task.bounds, box_mass=np.array([0.0, asked]))
     # Half the mass asked for is nearer to what is possible than all of it.
     begun = [replace(start, box_mass=0.5 * asked) for start in starts]
@@ -59,7 +59,7 @@ def as_nearest(found: PredictedLift2D, task: LiftTask2D) -> NearestLift[Predicte
 
     None: not even empty hands can move so, or all of the mass can be lifted.
     """
-    limits = [name for name, _ in found.optima[0].binding]
+    limits = [name for name, _ in found.optima[0].active_constraints]
     return lighter(found, float(task.bounds.box_mass[1]), limits)
 
 

@@ -23,18 +23,18 @@ from lift_predictor.core.sagittal.programme import (
     sagittal_programme,
 )
 from lift_predictor.core.sagittal.report_function import ReportFunction
-from lift_predictor.core.solvers.optimum import (
-    BINDING,
-    FEASIBLE,
-    Optimum,
+from lift_predictor.core.solvers.solution import InteriorPointOptions, Solution, Status
+from lift_predictor.core.solvers.solve import solve
+from lift_predictor.core.solvers.solver_run import (
+    ACTIVE_MULTIPLIER,
+    FEASIBILITY_TOLERANCE,
     Progress,
+    SolverRun,
     Start,
     best_first,
     runs_until,
 )
-from lift_predictor.core.solvers.solution import InteriorPointOptions, Solution, Status
-from lift_predictor.core.solvers.solve import solve
-from lift_predictor.core.solvers.spline_programme import SplineProgramme
+from lift_predictor.core.solvers.spline_nlp import SplineNlp
 from lift_predictor.core.solvers.stop import StopFlag
 
 LIFT_OPTIONS: Final = InteriorPointOptions(barrier=3e-3, bound_push=0.1)
@@ -62,8 +62,8 @@ class LiftOptimiser:
     ----------
     grid : Grid
         As given.
-    how : str
-        How the functions are run: compiled, or in CasADi's virtual machine and why.
+    backend : str
+        Description of the backend: compiled, or in CasADi's virtual machine and why.
     report : ReportFunction
         Forces of a motion.
     """
@@ -72,11 +72,11 @@ class LiftOptimiser:
         self.grid, self.time_limit = grid, time_limit
         self.stop = stop or StopFlag()
         library = sagittal_library()
-        self.how, self.build_time = library.how, library.build_time
+        self.backend, self.build_time = library.backend, library.build_time
         self.report = ReportFunction(library)
         self._assembler = sagittal_assembler(library, grid)
 
-    def programme(self, parameters: Array, bounds: LiftBounds) -> SplineProgramme:
+    def programme(self, parameters: Array, bounds: LiftBounds) -> SplineNlp:
         """Programme of one person and task (`LiftParameters.pack`)."""
         return sagittal_programme(self._assembler, self.grid, parameters, bounds)
 
@@ -87,7 +87,7 @@ class LiftOptimiser:
         start: Start,
         warm: Solution | None = None,
         deadline: float = float('inf'),
-    ) -> Optimum:
+    ) -> SolverRun:
         """Run the interior-point method from one start.
 
         Parameters
@@ -134,7 +134,7 @@ class LiftOptimiser:
         starts: Sequence[Start],
         deadline: float = float('inf'),
         progress: Progress | None = None,
-    ) -> tuple[Optimum, ...]:
+    ) -> tuple[SolverRun, ...]:
         """Run from every start; the best comes first.
 
         Converged runs come before the others, then the lower objective, or the smaller violation
@@ -147,13 +147,13 @@ class LiftOptimiser:
             starts,
             progress,
         )
-        if runs and all(run.outcome in NO_ANSWER for run in runs):
+        if runs and all(run.status in NO_ANSWER for run in runs):
             runs.extend(self._by_ipopt(parameters, bounds, starts, deadline))
         return best_first(runs)
 
     def _by_ipopt(
         self, parameters: Array, bounds: LiftBounds, starts: Sequence[Start], deadline: float
-    ) -> list[Optimum]:
+    ) -> list[SolverRun]:
         # Imports CasADi, which is not needed otherwise.
         from lift_predictor.core.solvers.compiled import build_programme
         from lift_predictor.core.solvers.ipopt import LiftSolver
@@ -165,14 +165,14 @@ class LiftOptimiser:
         return [replace(run, start=f'{run.start}, {IPOPT_NOTE}') for run in runs]
 
 
-def as_optimum(grid: Grid, programme: SplineProgramme, solution: Solution, name: str) -> Optimum:
+def as_optimum(grid: Grid, programme: SplineNlp, solution: Solution, name: str) -> SolverRun:
     """Describe a solution of the sagittal programme as one run.
 
     Parameters
     ----------
     grid : Grid
         Sizes.
-    programme : SplineProgramme
+    programme : SplineNlp
         What was solved.
     solution : Solution
         Where it ended.
@@ -180,38 +180,38 @@ def as_optimum(grid: Grid, programme: SplineProgramme, solution: Solution, name:
         Of the start.
     """
     violated = solution.violated[0][0] if solution.violated else ''
-    return Optimum(
+    return SolverRun(
         start=name,
-        converged=solution.ok and solution.primal <= FEASIBLE,
-        outcome=solution.status,
+        converged=solution.ok and solution.primal <= FEASIBILITY_TOLERANCE,
+        status=solution.status,
         control=solution.x[: grid.n_angles].reshape(grid.spline.n_free, -1),
         box_mass=float(solution.x[-1]),
         objective=solution.objective,
         iterations=solution.iterations,
         violation=solution.primal,
         violated=violated,
-        binding=binding(programme, solution),
+        active_constraints=active_constraints(programme, solution),
         stationarity=solution.dual,
         complementarity=solution.complementarity,
         solve_time=solution.solve_time,
     )
 
 
-def binding(programme: SplineProgramme, solution: Solution) -> tuple[tuple[str, float], ...]:
-    """Inequalities with a multiplier above `BINDING`, in the order of its size."""
+def active_constraints(programme: SplineNlp, solution: Solution) -> tuple[tuple[str, float], ...]:
+    """Inequalities with a multiplier above `ACTIVE_MULTIPLIER`, in the order of its size."""
     free = programme.lower < programme.upper
-    unequal = programme.row_lower < programme.row_upper
+    unequal = programme.g_lower < programme.g_upper
     size = np.concatenate(
         (
-            np.where(free, np.abs(solution.bound_multiplier), 0.0),
-            np.where(unequal, np.abs(solution.row_multiplier), 0.0),
+            np.where(free, np.abs(solution.lam_x), 0.0),
+            np.where(unequal, np.abs(solution.lam_g), 0.0),
         )
     )
-    order = np.argsort(-size, kind='stable')[: np.count_nonzero(size > BINDING)]
+    order = np.argsort(-size, kind='stable')[: np.count_nonzero(size > ACTIVE_MULTIPLIER)]
 
     def name(index: int) -> str:
         if index < programme.n:
             return programme.variable_name(index)
-        return programme.row_name(index - programme.n)
+        return programme.constraint_name(index - programme.n)
 
     return tuple((name(int(i)), float(size[i])) for i in order)

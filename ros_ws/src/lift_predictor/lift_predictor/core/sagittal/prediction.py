@@ -15,7 +15,7 @@ from human_model.typing import Array
 from lift_predictor.core.nearest_lift import NearestLift
 from lift_predictor.core.sagittal.parameters import JOINTS
 from lift_predictor.core.sagittal.verify import Verification
-from lift_predictor.core.solvers.optimum import Optimum
+from lift_predictor.core.solvers.solver_run import SolverRun
 
 TORQUE_NAMES: Final = (*JOINTS, 'mtp_angle')
 
@@ -42,7 +42,7 @@ class PredictedLift2D:
         Zero-moment point along the sagittal plane [m].
     support : array, shape (2,)
         Rear and front edge of the foot support region along the plane [m].
-    optima : tuple of Optimum
+    optima : tuple of SolverRun
         All runs, the one kept first; `optima[0].start` names the start that won.
     verification : Verification or None
         Dense-grid check.
@@ -63,7 +63,7 @@ class PredictedLift2D:
     torque_upper: Array
     zmp: Array
     support: Array
-    optima: tuple[Optimum, ...]
+    optima: tuple[SolverRun, ...]
     verification: Verification | None
     notes: tuple[str, ...]
     nearest: NearestLift[PredictedLift2D] | None = None
@@ -75,7 +75,7 @@ class PredictedLift2D:
         box_mass: float,
         duration: float,
         report: SolveReport,
-        optima: tuple[Optimum, ...] = (),
+        optima: tuple[SolverRun, ...] = (),
         verification: Verification | None = None,
         notes: tuple[str, ...] = (),
     ) -> PredictedLift2D:

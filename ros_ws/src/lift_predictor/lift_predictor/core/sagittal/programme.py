@@ -15,7 +15,7 @@ from lift_predictor.core.sagittal.grid import NODE_ROWS, Grid, LiftBounds
 from lift_predictor.core.sagittal.parameters import JOINTS, N_JOINTS, N_SCALARS
 from lift_predictor.core.solvers.layout import Channel, Group
 from lift_predictor.core.solvers.library import NodeLibrary, load_library
-from lift_predictor.core.solvers.spline_programme import Assembler, SplineProgramme, make_assembler
+from lift_predictor.core.solvers.spline_nlp import Assembler, SplineNlp, make_assembler
 
 if TYPE_CHECKING:
     from lift_predictor.core.solvers.node_function import NodeFunction
@@ -69,7 +69,7 @@ def sagittal_assembler(library: NodeLibrary, grid: Grid) -> Assembler:
 
 def sagittal_programme(
     assembler: Assembler, grid: Grid, parameters: Array, bounds: LiftBounds
-) -> SplineProgramme:
+) -> SplineNlp:
     """Programme of one person and task.
 
     Parameters
@@ -83,7 +83,7 @@ def sagittal_programme(
     bounds : LiftBounds
         Demands of the task.
     """
-    return SplineProgramme(
+    return SplineNlp(
         assembler,
         parameters,
         bounds.variables(grid),

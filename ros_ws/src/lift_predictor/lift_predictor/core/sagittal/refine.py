@@ -20,7 +20,7 @@ from lift_predictor.core.sagittal.grid import Grid
 from lift_predictor.core.sagittal.optimiser import LiftOptimiser
 from lift_predictor.core.sagittal.task import LiftTask2D
 from lift_predictor.core.sagittal.verify import Verification, verify
-from lift_predictor.core.solvers.optimum import Optimum
+from lift_predictor.core.solvers.solver_run import SolverRun
 
 MARGIN_FACTOR: Final = 1.05
 """First margin against a violation between the nodes, in units of the violation; twice as much
@@ -52,9 +52,9 @@ class Refiner:
         self,
         task: LiftTask2D,
         vector: Array,
-        optima: Sequence[Optimum],
+        optima: Sequence[SolverRun],
         deadline: float = float('inf'),
-    ) -> tuple[tuple[Optimum, ...], Verification | None]:
+    ) -> tuple[tuple[SolverRun, ...], Verification | None]:
         """Return the runs, one that holds between the nodes first, and its check.
 
         Parameters
@@ -63,21 +63,21 @@ class Refiner:
             What was solved.
         vector : array
             `LiftParameters.pack` of the task.
-        optima : sequence of Optimum
+        optima : sequence of SolverRun
             Runs, the best first.
         deadline : float
             No run is begun after it, on the clock of `time.perf_counter` [s].
 
         Returns
         -------
-        tuple of Optimum, Verification or None
+        tuple of SolverRun, Verification or None
             The check is of the first run, and None if that did not converge. Where nothing helps
             it tells what is violated. The runs that were given come last.
         """
         runs, check = self._with_margins(task, vector, tuple(optima), deadline)
         if check is None or check.passed:
             return runs, check
-        tried: list[Optimum] = []
+        tried: list[SolverRun] = []
         for candidate in _distinct(optima):
             for factor in FINER:
                 if time.perf_counter() > deadline:
@@ -95,8 +95,8 @@ class Refiner:
         return (runs[0], *tried, *runs[1:]), check
 
     def _with_margins(
-        self, task: LiftTask2D, vector: Array, optima: tuple[Optimum, ...], deadline: float
-    ) -> tuple[tuple[Optimum, ...], Verification | None]:
+        self, task: LiftTask2D, vector: Array, optima: tuple[SolverRun, ...], deadline: float
+    ) -> tuple[tuple[SolverRun, ...], Verification | None]:
         bounds = task.bounds
         check: Verification | None = None
         for attempt in range(self.refinements + 1):
@@ -117,7 +117,7 @@ class Refiner:
             optima = (again, *optima)
         return optima, check
 
-    def _check(self, task: LiftTask2D, grid: Grid, run: Optimum) -> Verification:
+    def _check(self, task: LiftTask2D, grid: Grid, run: SolverRun) -> Verification:
         parameters = replace(task.parameters, box_mass=run.box_mass)
         return verify(self.optimiser.report, grid, run.control, parameters, task.bounds)
 
@@ -132,9 +132,9 @@ class Refiner:
         return self._finer[factor]
 
 
-def _distinct(optima: Sequence[Optimum]) -> list[Optimum]:
+def _distinct(optima: Sequence[SolverRun]) -> list[SolverRun]:
     """Converged runs of different objectives, the best first, `CANDIDATES` at most."""
-    kept: list[Optimum] = []
+    kept: list[SolverRun] = []
     for run in optima:
         limit = SAME * max(abs(run.objective), 1e-9)
         if run.converged and all(abs(run.objective - k.objective) > limit for k in kept):

@@ -12,7 +12,7 @@ from human_model.typing import Array
 from lift_predictor.core.sagittal.grid import CENTRES, NODE_ROWS, REPORT_OUTPUTS
 from lift_predictor.core.sagittal.parameters import BODIES, N_JOINTS
 from lift_predictor.core.solvers.library import NodeLibrary
-from lift_predictor.core.solvers.node_evaluation import evaluate_rows
+from lift_predictor.core.solvers.node_evaluation import evaluate_node
 
 WIDTHS: Final = {
     'torque': N_JOINTS,
@@ -61,7 +61,7 @@ class ReportFunction:
             By the names of `REPORT_OUTPUTS`; units as in `model.chain_state`.
         """
         inputs = np.hstack((q, dq, ddq, np.full((len(q), 1), box_mass)))
-        values = evaluate_rows(self._library, 'report', inputs, parameters)
+        values = evaluate_node(self._library, 'report', inputs, parameters)
         stops = np.cumsum([WIDTHS[name] for name in REPORT_OUTPUTS])
         parts = np.split(values, stops[:-1], axis=1)
         return dict(zip(REPORT_OUTPUTS, parts, strict=True))

@@ -19,7 +19,7 @@ from human_model.typing import Array
 from lift_predictor.core.bspline import RestToRestSpline
 from lift_predictor.core.exceptions import TaskError
 from lift_predictor.core.sagittal.parameters import JOINTS
-from lift_predictor.core.solvers.optimum import Start
+from lift_predictor.core.solvers.solver_run import Start
 
 N_CONTROL: Final = 7
 """Control points of the library's splines."""

@@ -13,7 +13,7 @@ from lift_predictor.core.bspline import RestToRestSpline
 from lift_predictor.core.sagittal.kinematics import chain_positions, reach
 from lift_predictor.core.sagittal.plane import SagittalMotion
 from lift_predictor.core.sagittal.task import LiftTask2D
-from lift_predictor.core.solvers.optimum import Start
+from lift_predictor.core.solvers.solver_run import Start
 
 _DENSE: Final = 41
 _ARC_POSTURES: Final = 9

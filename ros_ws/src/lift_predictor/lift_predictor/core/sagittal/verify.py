@@ -44,7 +44,7 @@ class Verification:
         By the names of `TOLERANCE`, whose unit is in brackets; 0: none.
     worst : dict of str
         What is violated most in each family, and when; empty: nothing.
-    excess : array, shape (2, n_nodes, n_rows + 6)
+    excess : array, shape (2, n_nodes, n_g + 6)
         How far node rows and joint angles leave their lower and upper bounds in the intervals on
         both sides of each node; 0: nowhere.
     """

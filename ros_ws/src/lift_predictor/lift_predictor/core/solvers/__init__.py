@@ -1,3 +1,3 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Nonlinear programmes of lifts: compiling their functions and solving them."""
+"""Nonlinear problems of lifts: compiling their functions and solving them."""

@@ -47,7 +47,7 @@ class Programme:
         By name, as `nlp.programme_functions`.
     build_time : float
         Wall time to load or build [s].
-    how : str
+    backend : str
         In words: from the cache, compiled, or in the virtual machine and why.
     """
 
@@ -55,14 +55,14 @@ class Programme:
     library: Path | None
     functions: dict[str, Any]
     build_time: float
-    how: str
+    backend: str
 
 
 def build_programme(grid: Grid) -> Programme:
     """Load the compiled functions of a grid, compiling them first if the cache has none.
 
     Without a C compiler, or if it fails, the functions run in CasADi's virtual machine (slower,
-    same numbers) and `how` says why.
+    same numbers) and `backend` says why.
     """
     start = time.perf_counter()
     compiler = cache.find_compiler()

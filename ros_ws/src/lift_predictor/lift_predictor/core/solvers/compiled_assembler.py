@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Assembly of a programme by the compiled kernel (data/kernel/assembly.c)."""
+"""Assembly of a problem by the compiled kernel (data/kernel/assembly.c)."""
 
 from __future__ import annotations
 
@@ -38,14 +38,14 @@ class _CGroup(ctypes.Structure):
 
 
 class CompiledAssembler:
-    """Objective, rows and derivatives of groups of node functions.
+    """Objective, constraints and derivatives of groups of node functions.
 
     Parameters
     ----------
     library : NodeLibrary
         Compiled functions.
     groups : sequence of Group
-        The programme.
+        The problem.
     n : int
         Variables.
     """
@@ -55,17 +55,17 @@ class CompiledAssembler:
             raise ValueError('the library is not compiled')
         self.library = library.compiled
         self._lanes = library.lanes
-        self.n, self.m = n, sum(group.n_points * group.n_rows for group in groups)
+        self.n, self.m = n, sum(group.n_points * group.n_g for group in groups)
         self._keep: list[NDArray[np.generic]] = []
         structures = (_CGroup * len(groups))()
         first_row = 0
         for structure, group in zip(structures, groups, strict=True):
             self._describe(structure, group, library.functions[group.function].index, first_row)
-            first_row += group.n_points * group.n_rows
+            first_row += group.n_points * group.n_g
         self.library.lift_open.restype = ctypes.c_void_p
         handle = self.library.lift_open(self.n, self.m, len(groups), structures)
         if not handle:
-            raise MemoryError(f'no memory for a programme of {n} variables and {self.m} rows')
+            raise MemoryError(f'no memory for a problem of {n} variables and {self.m} constraints')
         self.handle = ctypes.c_void_p(handle)
         weakref.finalize(self, self.library.lift_close, self.handle)
         self.library.lift_values.restype = self.library.lift_first.restype = ctypes.c_double
@@ -87,7 +87,7 @@ class CompiledAssembler:
         structure.cost_weight = self._doubles(
             np.where(batches >= 0, group.cost_weight[filled], 0.0)
         )
-        structure.row = self._ints(np.where(batches >= 0, first_row + batches * group.n_rows, -1))
+        structure.row = self._ints(np.where(batches >= 0, first_row + batches * group.n_g, -1))
 
     def _ints(self, values: object) -> ctypes._Pointer[ctypes.c_int]:
         array = np.ascontiguousarray(values, dtype=np.int32)
@@ -109,23 +109,23 @@ class CompiledAssembler:
         self.library.lift_parameters(self.handle, _pointer(self._parameters))
 
     def values(self, x: Array) -> tuple[float, Array]:
-        """Objective and rows."""
-        x, rows = np.ascontiguousarray(x), np.empty(self.m)
-        return self.library.lift_values(self.handle, _pointer(x), _pointer(rows)), rows
+        """Objective and constraints."""
+        x, g = np.ascontiguousarray(x), np.empty(self.m)
+        return self.library.lift_values(self.handle, _pointer(x), _pointer(g)), g
 
     def first(self, x: Array) -> tuple[float, Array, Array]:
-        """Objective, rows, gradient; the point of the following calls."""
-        x, rows, gradient = np.ascontiguousarray(x), np.empty(self.m), np.empty(self.n)
+        """Objective, constraints, gradient; the point of the following calls."""
+        x, g, gradient = np.ascontiguousarray(x), np.empty(self.m), np.empty(self.n)
         objective = self.library.lift_first(
-            self.handle, _pointer(x), _pointer(rows), _pointer(gradient)
+            self.handle, _pointer(x), _pointer(g), _pointer(gradient)
         )
-        return objective, rows, gradient
+        return objective, g, gradient
 
     def times(self, step: Array) -> Array:
         """Jacobian times a step."""
-        step, rows = np.ascontiguousarray(step), np.empty(self.m)
-        self.library.lift_times(self.handle, _pointer(step), _pointer(rows))
-        return rows
+        step, g = np.ascontiguousarray(step), np.empty(self.m)
+        self.library.lift_times(self.handle, _pointer(step), _pointer(g))
+        return g
 
     def transposed(self, multiplier: Array) -> Array:
         """Transposed Jacobian times multipliers."""
@@ -134,14 +134,14 @@ class CompiledAssembler:
         return out
 
     def dense_rows(self, wanted: NDArray[np.int32]) -> Array:
-        """Dense Jacobian of some rows (sorted indices)."""
+        """Dense Jacobian of some constraints (sorted indices)."""
         out = np.empty((len(wanted), self.n))
         wanted = np.ascontiguousarray(wanted, dtype=np.int32)
         self.library.lift_dense_rows(self.handle, _pointer(wanted), len(wanted), _pointer(out))
         return out
 
     def condensed(self, sigma: float, multiplier: Array, weight: Array) -> Array:
-        """Hessian of the Lagrangian and weighted squares of the rows' gradients."""
+        """Hessian of the Lagrangian and weighted squares of the constraints' gradients."""
         multiplier, weight = np.ascontiguousarray(multiplier), np.ascontiguousarray(weight)
         out = np.empty((self.n, self.n))
         self.library.lift_condensed(

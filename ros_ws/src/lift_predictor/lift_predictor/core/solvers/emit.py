@@ -66,7 +66,7 @@ def library_source(functions: Sequence[DerivedFunction]) -> str:
         if own_source is not None:
             parts.append(own_source())
         sizes = (
-            function.n_in, function.n_parameters, function.n_rows,
+            function.n_in, function.n_parameters, function.n_g,
             len(function.jacobian_row), len(function.hessian_row),
         )  # fmt: skip
         entries.append(

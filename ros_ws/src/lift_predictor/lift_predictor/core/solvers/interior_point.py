@@ -5,8 +5,8 @@
 After Waechter and Biegler (2006), On the implementation of an interior-point filter line-search
 algorithm for large-scale nonlinear programming, Math. Program. 106: slacks and bound multipliers
 are eliminated, so that one dense symmetric matrix of the size of the variables is factored in each
-iteration. Meant for few variables and many inequality rows. Limits count iterations, so that
-results do not depend on the clock.
+iteration. Meant for few variables and many inequality constraints. Limits count iterations: the
+result does not depend on the clock.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ import numpy as np
 from human_model.typing import Array
 from lift_predictor.core.solvers.line_filter import Filter
 from lift_predictor.core.solvers.newton import InertiaMemory, NewtonSystem
-from lift_predictor.core.solvers.programme import Programme
-from lift_predictor.core.solvers.restoration import restore, row_violation
-from lift_predictor.core.solvers.scaling import ScaledPoint, ScaledProgramme
+from lift_predictor.core.solvers.problem import NlpProblem
+from lift_predictor.core.solvers.restoration import constraint_violation, restore
+from lift_predictor.core.solvers.scaling import ScaledNlp, ScaledPoint
 from lift_predictor.core.solvers.solution import InteriorPointOptions, Solution, Status
 
 KAPPA_EPSILON, KAPPA_MU, THETA_MU = 10.0, 0.2, 1.5
@@ -31,7 +31,7 @@ KAPPA_D = 1e-5
 LARGEST_FIRST_MULTIPLIER = 1e3
 MAX_RESTORATIONS = 8
 SHORT_STEP, SHORT_STEPS = 0.1, 12
-"""So many steps in a row that bounds cut to this length or less: the restoration takes over."""
+"""The restoration starts after this number of successive steps that bounds cut to this length."""
 TINY = 10.0 * float(np.finfo(float).eps)
 ACCEPTABLE_FACTOR = 100.0
 """Without further progress, an error of this many tolerances is rounding, not failure."""
@@ -39,7 +39,7 @@ ACCEPTABLE_FACTOR = 100.0
 
 @dataclass
 class _State:
-    """Iterate: v = (free variables, slacks), row multipliers, bound multipliers of v."""
+    """Iterate: v = (free variables, slacks), constraint multipliers, bound multipliers of v."""
 
     v: Array
     y: Array
@@ -56,7 +56,7 @@ class _Step:
 
 
 def solve(
-    programme: Programme,
+    problem: NlpProblem,
     x0: Array,
     options: InteriorPointOptions | None = None,
     warm: Solution | None = None,
@@ -65,14 +65,14 @@ def solve(
 
     Parameters
     ----------
-    programme : Programme
+    problem : NlpProblem
         What to solve.
     x0 : array, shape (n,)
         Start; moved inside the bounds.
     options : InteriorPointOptions, optional
         Settings.
     warm : Solution, optional
-        Solution of a similar programme with the same rows; its multipliers are the first ones.
+        Solution of a similar problem with the same constraints: the initial multipliers.
 
     Returns
     -------
@@ -84,27 +84,27 @@ def solve(
     CancelledError
         The stop flag of the options was set before the end.
     """
-    return _Solver(programme, x0, options or InteriorPointOptions(), warm).run()
+    return _Solver(problem, x0, options or InteriorPointOptions(), warm).run()
 
 
 class _Solver:
     def __init__(
-        self, programme: Programme, x0: Array, options: InteriorPointOptions, warm: Solution | None
+        self, problem: NlpProblem, x0: Array, options: InteriorPointOptions, warm: Solution | None
     ) -> None:
         self.begin = time.perf_counter()
         self.options = options
-        self.p = p = ScaledProgramme(programme, x0, options.gradient_limit)
+        self.p = p = ScaledNlp(problem, x0, options.gradient_limit)
         self.has_l, self.has_u = np.isfinite(p.lower), np.isfinite(p.upper)
         self.mu = options.barrier if warm is None else options.warm_barrier
         push = options.bound_push if warm is None else options.warm_bound_push
         x = self._inside(np.asarray(x0, dtype=float)[p.free], slice(0, p.n), push)
         self.point: ScaledPoint = p.linearise(x)
-        s = self._inside(self.point.rows[p.unequal], slice(p.n, None), push)
+        s = self._inside(self.point.g[p.unequal], slice(p.n, None), push)
         v = np.concatenate((x, s))
         self.state = self._multipliers(v) if warm is None else self._warm(v, warm)
         self.memory = InertiaMemory()
         self.iterations = self.restorations = self.short_steps = 0
-        self.filter = Filter(self._theta(self.point.rows, v))
+        self.filter = Filter(self._theta(self.point.g, v))
 
     def _inside(self, values: Array, part: slice, push: float) -> Array:
         """Move values off their bounds (ibid., section 3.6)."""
@@ -118,7 +118,7 @@ class _Solver:
         return np.clip(values, least, most)
 
     def _multipliers(self, v: Array) -> _State:
-        """Bound multipliers on the central path; row multipliers of inequalities to match."""
+        """Multipliers of bounds and inequality constraints on the central path."""
         low, high = self._distances(v)
         zl = np.minimum(self.mu / low, LARGEST_FIRST_MULTIPLIER)
         zu = np.minimum(self.mu / high, LARGEST_FIRST_MULTIPLIER)
@@ -128,8 +128,8 @@ class _Solver:
 
     def _warm(self, v: Array, warm: Solution) -> _State:
         p = self.p
-        y = p.objective_scale * warm.row_multiplier / p.row_scale
-        bound = np.concatenate((p.objective_scale * warm.bound_multiplier[p.free], y[p.unequal]))
+        y = p.objective_scale * warm.lam_g / p.g_scale
+        bound = np.concatenate((p.objective_scale * warm.lam_x[p.free], y[p.unequal]))
         low, high = self._distances(v)
         zl = np.where(self.has_l, np.maximum(-bound, self.mu / low), 0.0)
         zu = np.where(self.has_u, np.maximum(bound, self.mu / high), 0.0)
@@ -138,12 +138,12 @@ class _Solver:
     def _distances(self, v: Array) -> tuple[Array, Array]:
         return v - self.p.lower, self.p.upper - v
 
-    def _theta(self, rows: Array, v: Array) -> float:
-        return float(np.abs(self._residual(rows, v)).sum())
+    def _theta(self, g: Array, v: Array) -> float:
+        return float(np.abs(self._residual(g, v)).sum())
 
-    def _residual(self, rows: Array, v: Array) -> Array:
-        """Violation of the rows as equations: g - target, and g - s for inequalities."""
-        residual = rows.copy()
+    def _residual(self, g: Array, v: Array) -> Array:
+        """Violation of the constraints as equations: g - target, and g - s for inequalities."""
+        residual = g.copy()
         residual[self.p.equal] -= self.p.target
         residual[self.p.unequal] -= v[self.p.n :]
         return residual
@@ -164,7 +164,7 @@ class _Solver:
         products = np.concatenate(
             (low[self.has_l] * st.zl[self.has_l] - mu, high[self.has_u] * st.zu[self.has_u] - mu)
         )
-        primal = np.abs(self._residual(self.point.rows, st.v)).max(initial=0.0)
+        primal = np.abs(self._residual(self.point.g, st.v)).max(initial=0.0)
         return float(primal), float(np.abs(dual).max()), float(np.abs(products).max(initial=0.0))
 
     def _scaled_error(self, mu: float) -> float:
@@ -184,7 +184,7 @@ class _Solver:
     def run(self) -> Solution:
         """Iterate until solved or a limit is met."""
         options = self.options
-        if not (np.isfinite(self.point.objective) and np.all(np.isfinite(self.point.rows))):
+        if not (np.isfinite(self.point.objective) and np.all(np.isfinite(self.point.g))):
             return self._end(Status.NOT_FINITE)
         while True:
             if self._scaled_error(0.0) <= options.tolerance:
@@ -199,7 +199,7 @@ class _Solver:
                 system, sigma = self._factorise()
             except np.linalg.LinAlgError:
                 return self._end(Status.STUCK)
-            residual = self._residual(self.point.rows, self.state.v)
+            residual = self._residual(self.point.g, self.state.v)
             primal = float(np.abs(residual).max(initial=0.0))
             step = self._step(system, sigma, residual)
             blocked = not self._line_search(system, sigma, step)
@@ -227,7 +227,7 @@ class _Solver:
         return NewtonSystem(matrix, self.point.equality, self.memory), sigma
 
     def _step(self, system: NewtonSystem, sigma: Array, residual: Array) -> _Step:
-        """Newton step for the present barrier parameter and the given residual of the rows."""
+        """Newton step for the present barrier parameter and a residual of the constraints."""
         st, p, mu = self.state, self.p, self.mu
         low, high = self._distances(st.v)
         barrier = mu / high - mu / low
@@ -259,7 +259,7 @@ class _Solver:
         slope = float(
             self.point.gradient @ step.v[: p.n] + (self.mu / high - self.mu / low) @ step.v
         )
-        theta = self._theta(self.point.rows, st.v)
+        theta = self._theta(self.point.g, st.v)
         phi = self._phi(self.point.objective, st.v)
         longest = alpha = self._longest(step.v)
         self.short_steps = self.short_steps + 1 if longest < SHORT_STEP else 0
@@ -269,11 +269,11 @@ class _Solver:
             return True
         while alpha >= least:
             v = st.v + alpha * step.v
-            f, rows = p.values(v[: p.n])
-            trial = self._theta(rows, v), self._phi(f, v)
+            f, g = p.values(v[: p.n])
+            trial = self._theta(g, v), self._phi(f, v)
             accepted, enter = self.filter.judge((theta, phi), trial, slope, alpha)
             if not accepted and alpha == longest and trial[0] >= theta:
-                corrected = self._second_order(system, sigma, rows, v, alpha, (theta, phi, slope))
+                corrected = self._second_order(system, sigma, g, v, alpha, (theta, phi, slope))
                 if corrected is not None:
                     v, enter, step = corrected
                     accepted = True
@@ -286,14 +286,14 @@ class _Solver:
         return False
 
     def _second_order(
-        self, system: NewtonSystem, sigma: Array, rows: Array, v: Array, alpha: float,
+        self, system: NewtonSystem, sigma: Array, g: Array, v: Array, alpha: float,
         now: tuple[float, float, float],
     ) -> tuple[Array, bool, _Step] | None:  # fmt: skip
-        """Correct the step for the rows' curvature (ibid., section 2.4)."""
+        """Correct the step for the constraints' curvature (ibid., section 2.4)."""
         theta, phi, slope = now
-        residual = self._residual(self.point.rows, self.state.v)
+        residual = self._residual(self.point.g, self.state.v)
         before = theta
-        after = self._residual(rows, v)
+        after = self._residual(g, v)
         for _ in range(SOC_LIMIT):
             residual = alpha * residual + after
             if not np.all(np.isfinite(residual)):
@@ -301,8 +301,8 @@ class _Solver:
             step = self._step(system, sigma, residual)
             length = self._longest(step.v)
             v = self.state.v + length * step.v
-            f, rows = self.p.values(v[: self.p.n])
-            after = self._residual(rows, v)
+            f, g = self.p.values(v[: self.p.n])
+            after = self._residual(g, v)
             trial = float(np.abs(after).sum()), self._phi(f, v)
             accepted, enter = self.filter.judge((theta, phi), trial, slope, alpha)
             if accepted:
@@ -329,7 +329,7 @@ class _Solver:
     def _restore(self) -> Status | None:
         """Leave a point where no step is accepted; the status if that is not possible."""
         p, options = self.p, self.options
-        theta = self._theta(self.point.rows, self.state.v)
+        theta = self._theta(self.point.g, self.state.v)
         phi = self._phi(self.point.objective, self.state.v)
         if self._scaled_error(0.0) <= ACCEPTABLE_FACTOR * options.tolerance:
             return Status.OPTIMAL
@@ -343,8 +343,8 @@ class _Solver:
         self.iterations += restored.iterations
         x = self._inside(restored.x, slice(0, p.n), 1e-8)
         self.point = p.linearise(x)
-        largest = float(np.abs(row_violation(p, self.point.rows)).max())
-        s = self._inside(self.point.rows[p.unequal], slice(p.n, None), 1e-4)
+        largest = float(np.abs(constraint_violation(p, self.point.g)).max())
+        s = self._inside(self.point.g[p.unequal], slice(p.n, None), 1e-4)
         self.state = self._multipliers(np.concatenate((x, s)))
         if restored.minimum and largest > options.infeasible_violation:
             return Status.INFEASIBLE
@@ -362,14 +362,14 @@ def _finish(solver: _Solver, status: Status) -> Solution:
     source = p.source
     x = np.clip(p.full(st.v[: p.n]), source.lower, source.upper)
     raw = source.linearise(x)
-    y = p.row_scale * st.y / p.objective_scale
+    y = p.g_scale * st.y / p.objective_scale
     gradient = raw.gradient + raw.transposed(y)
     bound = -gradient
     bound[p.free] = (st.zu - st.zl)[: p.n] / p.objective_scale
-    excess = np.maximum(source.row_lower - raw.rows, raw.rows - source.row_upper)
+    excess = np.maximum(source.g_lower - raw.g, raw.g - source.g_upper)
     worst = np.argsort(-excess)[:3]
     violated = tuple(
-        (source.row_name(int(i)), float(excess[i]))
+        (source.constraint_name(int(i)), float(excess[i]))
         for i in worst
         if excess[i] > solver.options.infeasible_violation
     )

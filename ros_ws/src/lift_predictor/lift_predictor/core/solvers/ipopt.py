@@ -15,11 +15,11 @@ from human_model.typing import Array
 from lift_predictor.core.sagittal.grid import LiftBounds
 from lift_predictor.core.sagittal.programme import variable_name
 from lift_predictor.core.solvers.compiled import Programme
-from lift_predictor.core.solvers.optimum import (
-    BINDING,
-    FEASIBLE,
-    Optimum,
+from lift_predictor.core.solvers.solver_run import (
+    ACTIVE_MULTIPLIER,
+    FEASIBILITY_TOLERANCE,
     Progress,
+    SolverRun,
     Start,
     best_first,
     runs_until,
@@ -77,7 +77,7 @@ class LiftSolver:
             f, g = functions['nlp'](x, p)
             self._ipopt = ca.nlpsol('lift', 'ipopt', {'x': x, 'p': p, 'f': f, 'g': g}, options)
 
-    def solve(self, parameters: Array, bounds: LiftBounds, start: Start) -> Optimum:
+    def solve(self, parameters: Array, bounds: LiftBounds, start: Start) -> SolverRun:
         """Run IPOPT from one start.
 
         Parameters
@@ -113,17 +113,17 @@ class LiftSolver:
         slack = np.where(np.isfinite(slack), slack, 1.0)
         active = multipliers != 0.0
         complementarity = np.abs(multipliers[active] * slack[active])
-        return Optimum(
+        return SolverRun(
             start=start.name,
-            converged=bool(stats['success']) and violation <= FEASIBLE,
-            outcome=str(stats['return_status']),
+            converged=bool(stats['success']) and violation <= FEASIBILITY_TOLERANCE,
+            status=str(stats['return_status']),
             control=x[: grid.n_angles].reshape(grid.spline.n_free, -1),
             box_mass=float(x[-1]),
             objective=float(result['f']),
             iterations=int(stats['iter_count']),
             violation=violation,
-            violated=self._name(index) if violation > FEASIBLE else '',
-            binding=self._binding(multipliers, low, high),
+            violated=self._name(index) if violation > FEASIBILITY_TOLERANCE else '',
+            active_constraints=self._active_constraints(multipliers, low, high),
             stationarity=float(np.abs(stationarity).max()),
             complementarity=float(complementarity.max(initial=0.0)),
             solve_time=elapsed,
@@ -136,7 +136,7 @@ class LiftSolver:
         starts: Sequence[Start],
         deadline: float = float('inf'),
         progress: Progress | None = None,
-    ) -> tuple[Optimum, ...]:
+    ) -> tuple[SolverRun, ...]:
         """Run IPOPT from every start, as far as the time allows; the best comes first.
 
         Converged runs come before the others, then the lower effort, or the smaller violation
@@ -149,12 +149,12 @@ class LiftSolver:
             )
         )
 
-    def _binding(
+    def _active_constraints(
         self, multipliers: Array, low: Array, high: Array
     ) -> tuple[tuple[str, float], ...]:
         """Inequalities with a multiplier, in the order of its size."""
         size = np.where(low < high, np.abs(multipliers), 0.0)
-        order = np.argsort(-size)[: np.count_nonzero(size > BINDING)]
+        order = np.argsort(-size)[: np.count_nonzero(size > ACTIVE_MULTIPLIER)]
         return tuple((self._name(int(i)), float(size[i])) for i in order)
 
     def _name(self, index: int) -> str:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Where the node functions of a programme sit on the splines: constant tables, NumPy only."""
+"""Where the node functions of a problem sit on the splines: constant tables, NumPy only."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Indices = NDArray[np.int32]
 
 GROUPING_LIMIT = 1.34
 """Nodes of one spline piece share a batch if that does not need more batches by this factor: their
-matrices can then be summed before they are added to the programme's."""
+matrices can then be summed before they are added to the problem's."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +62,7 @@ class Group:
         In the order of the function's inputs.
     scalars : int array
         Indices of the variables that are its inputs s.
-    n_rows : int
+    n_g : int
         Rows of the function.
     cost_weight : array, shape (n_points,)
         Weight of its cost at each instant (quadrature); zeros: no cost.
@@ -71,7 +71,7 @@ class Group:
     function: str
     channels: tuple[Channel, ...]
     scalars: tuple[int, ...]
-    n_rows: int
+    n_g: int
     cost_weight: Array
 
     @property

@@ -3,7 +3,7 @@
 """Libraries of compiled node functions, loaded with ctypes: neither CasADi nor a compiler needed.
 
 Without a C compiler, or if it fails, the same functions run in CasADi's virtual machine
-(`virtual.py`): slower, same numbers, and `how` says why.
+(`virtual.py`): slower, same numbers, and `backend` says why.
 """
 
 from __future__ import annotations
@@ -36,12 +36,12 @@ GENERATORS: Final = ('node_function.py', 'emit.py')
 
 @dataclass(frozen=True)
 class FunctionFacts:
-    """Sizes of a node function: place in the library, inputs (z, s), parameters, rows."""
+    """Sizes of a node function: place in the library, inputs (z, s), parameters, constraints."""
 
     index: int
     n_in: int
     n_parameters: int
-    n_rows: int
+    n_g: int
 
 
 class _CFunction(ctypes.Structure):
@@ -49,7 +49,7 @@ class _CFunction(ctypes.Structure):
 
     _fields_ = (
         ('name', ctypes.c_char_p),
-        *((name, ctypes.c_int) for name in ('n_in', 'n_parameters', 'n_rows')),
+        *((name, ctypes.c_int) for name in ('n_in', 'n_parameters', 'n_g')),
     )
 
 
@@ -69,7 +69,7 @@ class NodeLibrary:
         Nodes that are evaluated at once.
     build_time : float
         Wall time to load or build [s].
-    how : str
+    backend : str
         In words: from the cache, compiled, or in the virtual machine and why.
     """
 
@@ -78,7 +78,7 @@ class NodeLibrary:
     virtual: dict[str, Any]
     lanes: int
     build_time: float
-    how: str
+    backend: str
 
 
 def load_library(
@@ -116,7 +116,7 @@ def load_library(
     while pointer := library.lift_function(len(functions)):
         facts = pointer.contents
         functions[facts.name.decode()] = FunctionFacts(
-            len(functions), facts.n_in, facts.n_parameters, facts.n_rows
+            len(functions), facts.n_in, facts.n_parameters, facts.n_g
         )
     return NodeLibrary(
         functions, library, {}, library.lift_lanes(), time.perf_counter() - start, how
@@ -157,7 +157,7 @@ def _compile(
 def _virtual(make: Callable[[], Sequence[NodeFunction]], start: float, why: str) -> NodeLibrary:
     derived = [function.derived() for function in make()]
     functions = {
-        f.name: FunctionFacts(i, f.n_in, f.n_parameters, f.n_rows) for i, f in enumerate(derived)
+        f.name: FunctionFacts(i, f.n_in, f.n_parameters, f.n_g) for i, f in enumerate(derived)
     }
     how = f"functions run in CasADi's virtual machine: {why}"
     virtual = {f.name: f for f in derived}

@@ -14,10 +14,11 @@ FIRST_SHIFT, LEAST_SHIFT, LARGEST_SHIFT = 1e-4, 1e-20, 1e40
 FIRST_GROWTH, GROWTH, DECAY = 100.0, 8.0, 1.0 / 3.0
 """Multiples of the identity tried (Waechter and Biegler 2006, algorithm IC)."""
 EQUALITY_SHIFT = 1e-8
-"""Regularisation of the Schur complement where the equality rows depend on each other (ibid.)."""
+"""Regularisation of the Schur complement of dependent equality constraints (ibid.)."""
 CONVEXIFICATION = 10.0
-"""Weight of the equality rows' outer products, relative to the matrix: the step is unchanged as
-the rows' change is prescribed, but a matrix positive on their null space becomes positive."""
+"""Weight of the outer products of the equality constraints' gradients, relative to the matrix. The
+step is unchanged, as the change of the constraints is prescribed, but a matrix that is positive
+definite on their null space becomes positive definite."""
 
 
 @dataclass
@@ -35,7 +36,7 @@ class NewtonSystem:
     matrix : array, shape (n, n)
         Condensed matrix with the bounds' curvature on its diagonal.
     equality : array, shape (n_equalities, n)
-        Jacobian E of the equality rows.
+        Jacobian E of the equality constraints.
     memory : InertiaMemory
         Kept from iteration to iteration.
     """

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""One node function at many instants, outside of any programme."""
+"""One node function at many instants, outside of any problem."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from human_model.typing import Array
 from lift_predictor.core.solvers.library import NodeLibrary
 
 
-def evaluate_rows(library: NodeLibrary, name: str, inputs: Array, parameters: Array) -> Array:
+def evaluate_node(library: NodeLibrary, name: str, inputs: Array, parameters: Array) -> Array:
     """Rows of a node function.
 
     Parameters
@@ -28,7 +28,7 @@ def evaluate_rows(library: NodeLibrary, name: str, inputs: Array, parameters: Ar
 
     Returns
     -------
-    array, shape (n, n_rows)
+    array, shape (n, n_g)
     """
     facts = library.functions[name]
     inputs = np.ascontiguousarray(inputs, dtype=float)
@@ -40,7 +40,7 @@ def evaluate_rows(library: NodeLibrary, name: str, inputs: Array, parameters: Ar
     if library.compiled is None:
         outputs = library.virtual[name].value.map(len(inputs))(inputs.T, parameters)
         return np.asarray(outputs).T[:, 1:]
-    out = np.empty((len(inputs), 1 + facts.n_rows))
+    out = np.empty((len(inputs), 1 + facts.n_g))
     pointers = [ctypes.c_void_p(array.ctypes.data) for array in (inputs, parameters, out)]
     library.compiled.lift_evaluate(facts.index, len(inputs), *pointers)
     return out[:, 1:]

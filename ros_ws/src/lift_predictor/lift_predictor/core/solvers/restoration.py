@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Feasibility restoration: the nearest point where the rows' violation has a minimum."""
+"""Feasibility restoration: the nearest point where the constraints' violation has a minimum."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ import numpy as np
 
 from human_model.typing import Array
 from lift_predictor.core.solvers.newton import cholesky, cholesky_solve
-from lift_predictor.core.solvers.scaling import ScaledProgramme
+from lift_predictor.core.solvers.scaling import ScaledNlp
 
 FIRST_DAMPING, DAMPING_GROWTH, DAMPING_DECAY = 1e-6, 10.0, 0.1
 LARGEST_DAMPING = 1e12
 STATIONARY = 1e-8
 """Projected gradient, relative to the violation, at which a minimum is reached."""
-HOPELESS = 0.1
+LEAST_GRADIENT_RATIO = 0.1
 """To the first order no change of the variables by 1 takes more than this share of the squared
 violation: what is left is a minimum that is not zero."""
 STALLED, STALLED_STEPS = 1e-3, 10
-"""Relative decrease of the squared violation that counts as none, so many times in a row."""
+"""Relative decrease of the squared violation that counts as none, so many times in succession."""
 
 
 @dataclass(frozen=True)
@@ -34,18 +34,18 @@ class Restored:
 
 
 def restore(
-    programme: ScaledProgramme,
+    problem: ScaledNlp,
     x: Array,
     goal: float,
     max_iterations: int,
     late: Callable[[], bool] = lambda: False,
 ) -> Restored:
-    """Reduce half the squared violation of the rows by a damped, projected Newton method.
+    """Reduce half the squared violation of the constraints by a damped, projected Newton method.
 
     Parameters
     ----------
-    programme : ScaledProgramme
-        The programme.
+    problem : ScaledNlp
+        The problem.
     x : array
         Where to begin, inside the bounds.
     goal : float
@@ -55,19 +55,19 @@ def restore(
     late : callable, optional
         Asked before each iteration whether to end there.
     """
-    low, high = programme.lower[: programme.n], programme.upper[: programme.n]
+    low, high = problem.lower[: problem.n], problem.upper[: problem.n]
     damping, stalled = FIRST_DAMPING, 0
-    violation = row_violation(programme, programme.values(x)[1])
+    violation = constraint_violation(problem, problem.values(x)[1])
     value = 0.5 * float(violation @ violation)
     for iteration in range(max_iterations):
         if float(np.abs(violation).max(initial=0.0)) <= goal or late():
             return Restored(x, iteration, False)
-        point = programme.linearise(x)
+        point = problem.linearise(x)
         gradient = point.transposed(violation)
         held = ((x <= low) & (gradient > 0.0)) | ((x >= high) & (gradient < 0.0))
         free = np.flatnonzero(~held)
         steep = float(np.abs(gradient[free]).max(initial=0.0))
-        hopeless = float(np.abs(gradient[free]).sum()) <= HOPELESS * value
+        hopeless = float(np.abs(gradient[free]).sum()) <= LEAST_GRADIENT_RATIO * value
         if steep <= STATIONARY * max(1.0, float(np.abs(violation).max())) or hopeless:
             return Restored(x, iteration, True)
         active = (violation != 0.0).astype(float)
@@ -78,10 +78,10 @@ def restore(
             trial = x.copy()
             trial[free] += step
             trial = np.clip(trial, low, high)
-            rows = programme.values(trial)[1]
-            after = row_violation(programme, rows)
+            g = problem.values(trial)[1]
+            after = constraint_violation(problem, g)
             new = 0.5 * float(after @ after)
-            # A row or step that is not finite makes the comparison false.
+            # A constraint or step that is not finite makes the comparison false.
             if new < value:
                 break
             damping *= DAMPING_GROWTH
@@ -95,14 +95,12 @@ def restore(
     return Restored(x, max_iterations, False)
 
 
-def row_violation(programme: ScaledProgramme, rows: Array) -> Array:
-    """Signed distance of every row to its bounds; 0 where they are met."""
-    violation = np.zeros(programme.m)
-    violation[programme.equal] = rows[programme.equal] - programme.target
-    inside, n = rows[programme.unequal], programme.n
-    violation[programme.unequal] = inside - np.clip(
-        inside, programme.lower[n:], programme.upper[n:]
-    )
+def constraint_violation(problem: ScaledNlp, g: Array) -> Array:
+    """Signed distance of every constraint to its bounds; 0 where they are met."""
+    violation = np.zeros(problem.m)
+    violation[problem.equal] = g[problem.equal] - problem.target
+    inside, n = g[problem.unequal], problem.n
+    violation[problem.unequal] = inside - np.clip(inside, problem.lower[n:], problem.upper[n:])
     return violation
 
 

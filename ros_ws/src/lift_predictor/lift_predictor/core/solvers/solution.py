@@ -33,7 +33,7 @@ class InteriorPointOptions:
         Largest scaled KKT error of a solution (IPOPT's default).
     infeasible_violation : float
         A point where the violation cannot be reduced locally is infeasible above this largest
-        violation of a scaled row (IPOPT's `constr_viol_tol`).
+        violation of a scaled constraint (IPOPT's `constr_viol_tol`).
     max_iterations : int
         Iterations at most, those of the feasibility restoration included.
     time_limit : float
@@ -45,7 +45,7 @@ class InteriorPointOptions:
     warm_barrier, warm_bound_push : float
         The same for warm starts.
     gradient_limit : float
-        Objective and rows are scaled down where their gradients at the start are larger.
+        Objective and constraints are scaled down where their gradients at the start are larger.
     stop : StopFlag, optional
         Ends the work before the next iteration.
     """
@@ -74,22 +74,22 @@ class Solution:
         Variables.
     objective : float
         f(x).
-    row_multiplier : array, shape (m,)
-        Multipliers y of the rows: gradient + J' y + bound multiplier = 0; positive at an upper
+    lam_g : array, shape (m,)
+        Multipliers of the constraints: gradient + J' lam_g + lam_x = 0; positive at an upper
         bound.
-    bound_multiplier : array, shape (n,)
+    lam_x : array, shape (n,)
         Multipliers of the variables' bounds, positive at an upper bound (of fixed variables: the
         sensitivity of the objective to the value).
     iterations : int
         Iterations, restoration included.
     primal : float
-        Largest violation of a row or bound, unscaled.
+        Largest violation of a constraint or bound, unscaled.
     dual : float
         Largest element of the gradient of the Lagrangian, unscaled.
     complementarity : float
         Largest product of a multiplier and its distance to the bound, unscaled.
     violated : tuple of (str, float)
-        Names and violations of the rows that are violated most, where the result is infeasible.
+        Names and violations of the most violated constraints of an infeasible result.
     solve_time : float
         Wall time [s].
     """
@@ -97,8 +97,8 @@ class Solution:
     status: Status
     x: Array
     objective: float
-    row_multiplier: Array
-    bound_multiplier: Array
+    lam_g: Array
+    lam_x: Array
     iterations: int
     primal: float
     dual: float

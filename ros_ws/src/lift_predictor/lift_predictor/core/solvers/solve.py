@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Solve a programme: by the compiled method where its functions are compiled, else in Python."""
+"""Solve a problem: by the compiled method where its functions are compiled, else in Python."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ import numpy as np
 
 from human_model.typing import Array
 from lift_predictor.core.solvers.compiled_assembler import CompiledAssembler
-from lift_predictor.core.solvers.programme import Programme
+from lift_predictor.core.solvers.problem import NlpProblem
 from lift_predictor.core.solvers.solution import InteriorPointOptions, Solution, Status
-from lift_predictor.core.solvers.spline_programme import SplineProgramme
+from lift_predictor.core.solvers.spline_nlp import SplineNlp
 
 STATUS: Final = (
     Status.OPTIMAL, Status.INFEASIBLE, Status.ITERATION_LIMIT, Status.TIME_LIMIT, Status.STUCK,
@@ -35,7 +35,7 @@ class _Settings(ctypes.Structure):
     )  # fmt: skip
 
 
-class _Outcome(ctypes.Structure):
+class _Result(ctypes.Structure):
     _fields_ = (
         ('status', ctypes.c_int),
         ('iterations', ctypes.c_int),
@@ -46,7 +46,7 @@ class _Outcome(ctypes.Structure):
 
 
 def solve(
-    programme: Programme,
+    problem: NlpProblem,
     x0: Array,
     options: InteriorPointOptions | None = None,
     warm: Solution | None = None,
@@ -63,29 +63,27 @@ def solve(
     options = options or InteriorPointOptions()
     if options.stop is not None:
         options.stop.check()
-    if isinstance(programme, SplineProgramme) and isinstance(
-        programme.assembler, CompiledAssembler
-    ):
-        return _solve_compiled(programme, programme.assembler, x0, options, warm)
+    if isinstance(problem, SplineNlp) and isinstance(problem.assembler, CompiledAssembler):
+        return _solve_compiled(problem, problem.assembler, x0, options, warm)
     # Imports SciPy.
     from lift_predictor.core.solvers import interior_point
 
-    return interior_point.solve(programme, x0, options, warm)
+    return interior_point.solve(problem, x0, options, warm)
 
 
 def _solve_compiled(
-    programme: SplineProgramme,
+    problem: SplineNlp,
     assembler: CompiledAssembler,
     x0: Array,
     options: InteriorPointOptions,
     warm: Solution | None,
 ) -> Solution:
     begin = time.perf_counter()
-    assembler.set_parameters(programme.parameters)
+    assembler.set_parameters(problem.parameters)
     x = np.array(x0, dtype=float)
     y, z = np.zeros(assembler.m), np.zeros(assembler.n)
     if warm is not None:
-        y[:], z[:] = warm.row_multiplier, warm.bound_multiplier
+        y[:], z[:] = warm.lam_g, warm.lam_x
     settings = _Settings(
         options.tolerance,
         options.infeasible_violation,
@@ -97,32 +95,32 @@ def _solve_compiled(
         int(warm is not None),
         None if options.stop is None else options.stop.address,
     )
-    outcome = _Outcome()
-    bounds = (programme.lower, programme.upper, programme.row_lower, programme.row_upper)
+    result = _Result()
+    bounds = (problem.lower, problem.upper, problem.g_lower, problem.g_upper)
     failed = assembler.library.lift_solve(
         assembler.handle,
         *(_pointer(bound) for bound in bounds),
         ctypes.byref(settings),
         *(_pointer(array) for array in (x, y, z)),
-        ctypes.byref(outcome),
+        ctypes.byref(result),
     )
     if failed:
         raise MemoryError('no memory for the interior-point method')
     if options.stop is not None:
         options.stop.check()
-    status = STATUS[outcome.status]
+    status = STATUS[result.status]
     violated: tuple[tuple[str, float], ...] = ()
     if status is not Status.OPTIMAL:
-        rows = programme.values(x)[1]
-        excess = np.maximum(programme.row_lower - rows, rows - programme.row_upper)
+        g = problem.values(x)[1]
+        excess = np.maximum(problem.g_lower - g, g - problem.g_upper)
         violated = tuple(
-            (programme.row_name(int(i)), float(excess[i]))
+            (problem.constraint_name(int(i)), float(excess[i]))
             for i in np.argsort(-excess)[:3]
             if excess[i] > options.infeasible_violation
         )
     return Solution(
-        status, x, outcome.objective, y, z, outcome.iterations, outcome.primal, outcome.dual,
-        outcome.complementarity, violated, time.perf_counter() - begin,
+        status, x, result.objective, y, z, result.iterations, result.primal, result.dual,
+        result.complementarity, violated, time.perf_counter() - begin,
     )  # fmt: skip
 
 

@@ -52,10 +52,10 @@ class SweptDerivatives:
     def __init__(self, function: SweptFunction) -> None:
         self.function, self.name = function, function.name
         self._zs = ca.vertcat(function.z, function.s)
-        self._out = ca.vertcat(ca.SX(function.cost), ca.SX(function.rows))
+        self._out = ca.vertcat(ca.SX(function.cost), ca.SX(function.g))
         self.value = ca.Function('value', [self._zs, function.p], [self._out])
         self.n_in, self.n_parameters = int(self._zs.numel()), int(function.p.numel())
-        self.n_rows = int(self._out.numel()) - 1
+        self.n_g = int(self._out.numel()) - 1
         if sorted(i for part in function.sets for i in part) != list(range(self.n_in)):
             raise ValueError(f'{self.name}: the sets are no partition of {self.n_in} inputs')
         row, column = _triplet(self.value.jac_sparsity(0, 0))
@@ -63,7 +63,7 @@ class SweptDerivatives:
         order = np.lexsort((column[keep], row[keep]))
         self.jacobian_row = (row[keep] - 1)[order].astype(np.int32)
         self.jacobian_column = column[keep][order].astype(np.int32)
-        self._multiplier = ca.SX.sym('multiplier', 1 + self.n_rows)
+        self._multiplier = ca.SX.sym('multiplier', 1 + self.n_g)
         self._gradient = ca.gradient(ca.dot(self._multiplier, self._out), self._zs)
         gradient = ca.Function('g', [self._zs, function.p, self._multiplier], [self._gradient])
         row, column = _triplet(gradient.jac_sparsity(0, 0))
@@ -74,7 +74,7 @@ class SweptDerivatives:
     @cached_property
     def _written_out(self) -> DerivedFunction:
         f = self.function
-        return NodeFunction(f.name, f.z, f.s, f.p, f.rows, f.cost).derived()
+        return NodeFunction(f.name, f.z, f.s, f.p, f.g, f.cost).derived()
 
     @property
     def first(self) -> Any:
@@ -125,7 +125,7 @@ class SweptDerivatives:
             _table(f'{name}_by_column', order), _table(f'{name}_column_begin', begin),
             *(_table(f'{name}_set_{k}', part) for k, part in enumerate(sets)),
             f'static void {name}_first(const vec *in, const double *p, vec *out) {{',
-            f'    vec base[{name}_first_base_size], t[{1 + self.n_rows}];',
+            f'    vec base[{name}_first_base_size], t[{1 + self.n_g}];',
             f'    {name}_first_base(in, p, NULL, NULL, base, out);',
         ]  # fmt: skip
         for k, part in enumerate(sets):
@@ -136,10 +136,10 @@ class SweptDerivatives:
             seed[j] = spread(1.0);
             {name}_first_{k}(in, p, NULL, seed, base, t);
             seed[j] = spread(0.0);
-            out[{1 + self.n_rows} + column] = t[0];
+            out[{1 + self.n_g} + column] = t[0];
             for (int i = {name}_column_begin[column]; i < {name}_column_begin[column + 1]; i++) {{
                 int at = {name}_by_column[i];
-                out[{1 + self.n_rows + self.n_in} + at] = t[1 + {name}_jacobian_row[at]];
+                out[{1 + self.n_g + self.n_in} + at] = t[1 + {name}_jacobian_row[at]];
             }}
         }}
     }}""")

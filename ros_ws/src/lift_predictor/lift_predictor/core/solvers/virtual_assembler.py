@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Assembly of a programme in NumPy with CasADi's virtual machine: no compiler, the reference."""
+"""Assembly of a problem in NumPy with CasADi's virtual machine: no compiler, the reference."""
 
 from __future__ import annotations
 
@@ -21,26 +21,26 @@ class _VirtualGroup:
     def __init__(self, group: Group, function: DerivedFunction, n: int, first_row: int) -> None:
         self.group, self.function = group, function
         points = group.n_points
-        self.rows = slice(first_row, first_row + points * group.n_rows)
+        self.g = slice(first_row, first_row + points * group.n_g)
         self.value = function.value.map(points)
         self.first, self.second = function.first.map(points), function.second.map(points)
         unit = np.eye(n)
         self.gather = np.stack([group.inputs(unit[i]) for i in range(n)], axis=2)
-        self.jacobian = np.zeros((points, group.n_rows, n))
+        self.jacobian = np.zeros((points, group.n_g, n))
         self.inputs = np.zeros((points, function.n_in))
 
     def linearise(self, x: Array, p: Array) -> tuple[float, Array, Array]:
         f = self.function
         self.inputs = self.group.inputs(x)
         out = np.asarray(self.first(self.inputs.T, p)).T
-        cost, rows = out[:, 0], out[:, 1 : 1 + f.n_rows]
-        slope = out[:, 1 + f.n_rows : 1 + f.n_rows + f.n_in]
-        local = np.zeros((len(out), f.n_rows, f.n_in))
-        local[:, f.jacobian_row, f.jacobian_column] = out[:, 1 + f.n_rows + f.n_in :]
+        cost, g = out[:, 0], out[:, 1 : 1 + f.n_g]
+        slope = out[:, 1 + f.n_g : 1 + f.n_g + f.n_in]
+        local = np.zeros((len(out), f.n_g, f.n_in))
+        local[:, f.jacobian_row, f.jacobian_column] = out[:, 1 + f.n_g + f.n_in :]
         self.jacobian = local @ self.gather
         weight = self.group.cost_weight
         gradient = np.einsum('b,bi,bin->n', weight, slope, self.gather)
-        return float(weight @ cost), rows.ravel(), gradient
+        return float(weight @ cost), g.ravel(), gradient
 
     def hessian(self, p: Array, sigma: float, multiplier: Array) -> Array:
         f, points = self.function, self.group.n_points
@@ -62,41 +62,41 @@ class VirtualAssembler:
     library : NodeLibrary
         Functions that are not compiled.
     groups : sequence of Group
-        The programme.
+        The problem.
     n : int
         Variables.
     """
 
     def __init__(self, library: NodeLibrary, groups: Sequence[Group], n: int) -> None:
-        self.n, self.m = n, sum(group.n_points * group.n_rows for group in groups)
+        self.n, self.m = n, sum(group.n_points * group.n_g for group in groups)
         self._groups, self._p = [], np.zeros(0)
         first_row = 0
         for group in groups:
             part = _VirtualGroup(group, library.virtual[group.function], n, first_row)
             self._groups.append(part)
-            first_row += group.n_points * group.n_rows
+            first_row += group.n_points * group.n_g
 
     def set_parameters(self, parameters: Array) -> None:
         """Person and task of all following calls."""
         self._p = np.array(parameters, dtype=float)
 
     def values(self, x: Array) -> tuple[float, Array]:
-        """Objective and rows."""
-        objective, rows = 0.0, np.empty(self.m)
+        """Objective and constraints."""
+        objective, g = 0.0, np.empty(self.m)
         for part in self._groups:
             out = np.asarray(part.value(part.group.inputs(x).T, self._p)).T
             objective += float(part.group.cost_weight @ out[:, 0])
-            rows[part.rows] = out[:, 1:].ravel()
-        return objective, rows
+            g[part.g] = out[:, 1:].ravel()
+        return objective, g
 
     def first(self, x: Array) -> tuple[float, Array, Array]:
-        """Objective, rows, gradient; the point of the following calls."""
-        objective, rows, gradient = 0.0, np.empty(self.m), np.zeros(self.n)
+        """Objective, constraints, gradient; the point of the following calls."""
+        objective, g, gradient = 0.0, np.empty(self.m), np.zeros(self.n)
         for part in self._groups:
-            f, rows[part.rows], slope = part.linearise(x, self._p)
+            f, g[part.g], slope = part.linearise(x, self._p)
             objective += f
             gradient += slope
-        return objective, rows, gradient
+        return objective, g, gradient
 
     def _jacobian(self) -> Array:
         return np.vstack([part.jacobian.reshape(-1, self.n) for part in self._groups])
@@ -110,14 +110,14 @@ class VirtualAssembler:
         return np.asarray(self._jacobian().T @ multiplier)
 
     def dense_rows(self, wanted: NDArray[np.int32]) -> Array:
-        """Dense Jacobian of some rows."""
+        """Dense Jacobian of some constraints."""
         return self._jacobian()[wanted]
 
     def condensed(self, sigma: float, multiplier: Array, weight: Array) -> Array:
-        """Hessian of the Lagrangian and weighted squares of the rows' gradients."""
+        """Hessian of the Lagrangian and weighted squares of the constraints' gradients."""
         jacobian = self._jacobian()
         matrix = (jacobian.T * weight) @ jacobian
         for part in self._groups:
             if len(part.function.hessian_row):
-                matrix = matrix + part.hessian(self._p, sigma, multiplier[part.rows])
+                matrix = matrix + part.hessian(self._p, sigma, multiplier[part.g])
         return np.asarray(matrix)

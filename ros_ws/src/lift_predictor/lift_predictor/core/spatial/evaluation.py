@@ -119,12 +119,12 @@ def lowering(library: NodeLibrary, q: Array, parameters: SpatialParameters) -> t
 
 
 def _run(library: NodeLibrary, name: str, inputs: Array, parameters: Array) -> Array:
-    """Rows (n, n_rows) of a function of the library at n inputs."""
+    """Rows (n, n_g) of a function of the library at n inputs."""
     facts = library.functions[name]
     if library.compiled is None:
         function = library.virtual[name].value
         return np.asarray(function.map(len(inputs))(inputs.T, parameters)).T[:, 1:]
-    out = np.empty((len(inputs), 1 + facts.n_rows))
+    out = np.empty((len(inputs), 1 + facts.n_g))
     library.compiled.lift_evaluate(
         facts.index, len(inputs), *(ctypes.c_void_p(a.ctypes.data) for a in (
             inputs, parameters, out,

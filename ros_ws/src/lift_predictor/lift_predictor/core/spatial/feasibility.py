@@ -9,9 +9,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from lift_predictor.core.nearest_lift import TIE_BREAK, NearestLift, lighter
-from lift_predictor.core.solvers.optimum import BINDING
+from lift_predictor.core.nearest_lift import REGULARISATION, NearestLift, lighter
 from lift_predictor.core.solvers.solution import Solution
+from lift_predictor.core.solvers.solver_run import ACTIVE_MULTIPLIER
 from lift_predictor.core.spatial.grid import (
     HAND_ROWS,
     LIMITED,
@@ -32,7 +32,7 @@ Solve = Callable[[SpatialTask, Sequence[SpatialStart]], PredictedLift3D]
 def binding_limits(
     task: SpatialTask, grid: SpatialGrid, solution: Solution
 ) -> tuple[tuple[str, float], ...]:
-    """Inequalities with a multiplier above `BINDING`, in the order of its size.
+    """Inequalities with a multiplier above `ACTIVE_MULTIPLIER`, in the order of its size.
 
     Rows are scaled to the range of their limit. Where hands and box have to be (3.11 to 3.13) is
     left out: that is the task, not a limit. Where a recording or a technique narrows a limit, the
@@ -48,7 +48,7 @@ def binding_limits(
         Of the task, or of the task with margins.
     """
     low, high = task.bounds.rows()
-    size = np.where(low < high, np.abs(solution.row_multiplier), 0.0)
+    size = np.where(low < high, np.abs(solution.lam_g), 0.0)
     node = size[: grid.n_nodes * len(NODE_ROWS)].reshape(grid.n_nodes, -1)
     node[:, row_slice(HAND_ROWS)] = 0.0
     person = task.person
@@ -57,8 +57,8 @@ def binding_limits(
         task.bounds, node_lower=limits[0], node_upper=limits[1], angle_lower=limits[2],
         angle_upper=limits[3],
     ).rows()  # fmt: skip
-    narrowed = np.where(solution.row_multiplier > 0.0, high < plain[1], low > plain[0])
-    order = np.argsort(-size, kind='stable')[: np.count_nonzero(size > BINDING)]
+    narrowed = np.where(solution.lam_g > 0.0, high < plain[1], low > plain[0])
+    order = np.argsort(-size, kind='stable')[: np.count_nonzero(size > ACTIVE_MULTIPLIER)]
     return tuple(
         (f'{"window on " if narrowed[i] else ""}{grid.row_names[i]}', float(size[i]))
         for i in order
@@ -90,7 +90,7 @@ def lighter_lift(
     if asked == 0.0:
         return None
     bounds: SpatialBounds = replace(task.bounds, box_mass=np.array([0.0, asked]))
-    parameters = replace(task.parameters, objective=np.array([TIE_BREAK, 1.0]))
+    parameters = replace(task.parameters, objective=np.array([REGULARISATION, 1.0]))
     open_task = replace(task, bounds=bounds, parameters=parameters)
     found = solve(open_task, [replace(start, box_mass=0.0) for start in starts])
     if not found.report.ok:

@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from lift_predictor.core.maximum_weight import LARGEST_WEIGHT, Normalisation, Weighting
-from lift_predictor.core.nearest_lift import TIE_BREAK
+from lift_predictor.core.nearest_lift import REGULARISATION
 from lift_predictor.core.spatial.evaluation import evaluate, sample
 from lift_predictor.core.spatial.grid import WEIGHT_OFFSET
 from lift_predictor.core.spatial.multistart import Progress
@@ -111,7 +111,7 @@ def total_effort(
 
 def for_weight_alone(task: SpatialTask) -> SpatialTask:
     """Task with the largest weight as the only criterion but for a tie-break."""
-    return _with_objective(task, (TIE_BREAK, 1.0))
+    return _with_objective(task, (REGULARISATION, 1.0))
 
 
 def _with_objective(task: SpatialTask, objective: tuple[float, float]) -> SpatialTask:

@@ -14,7 +14,7 @@ from lift_predictor.core.exceptions import UnreachableError
 from lift_predictor.core.solvers.library import NodeLibrary
 from lift_predictor.core.solvers.solution import InteriorPointOptions, Solution
 from lift_predictor.core.solvers.solve import solve
-from lift_predictor.core.solvers.spline_programme import SplineProgramme
+from lift_predictor.core.solvers.spline_nlp import SplineNlp
 from lift_predictor.core.spatial.grid import HAND_SCALE, LIMITED, NODE_ROWS, SpatialGrid
 from lift_predictor.core.spatial.parameters import N_SPLINED, SPLINED
 from lift_predictor.core.spatial.programme import posture_assembler
@@ -157,7 +157,7 @@ class PostureFinder:
         )
         free = np.full(N_SPLINED, np.inf)
         still = (mass, 1.0)
-        programme = SplineProgramme(
+        programme = SplineNlp(
             self._assembler,
             task.parameters.pack(),
             (np.append(-free, still), np.append(free, still)),

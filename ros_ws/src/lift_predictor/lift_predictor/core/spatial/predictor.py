@@ -17,13 +17,13 @@ from human_model.motion import Lift
 from human_model.report import SolveReport, SolveStatus
 from human_model.subject import Subject
 from lift_predictor.core.exceptions import TaskError
-from lift_predictor.core.nearest_lift import HOPELESS, with_nearest
+from lift_predictor.core.nearest_lift import INFEASIBLE_STATUSES, with_nearest
 from lift_predictor.core.sagittal.task import Box
 from lift_predictor.core.sampling import sample_times
 from lift_predictor.core.solvers.library import NodeLibrary
 from lift_predictor.core.solvers.solution import InteriorPointOptions, Solution, Status
 from lift_predictor.core.solvers.solve import solve
-from lift_predictor.core.solvers.spline_programme import Assembler
+from lift_predictor.core.solvers.spline_nlp import Assembler
 from lift_predictor.core.solvers.stop import StopFlag
 from lift_predictor.core.spatial.comparison import SpatialComparison, compare
 from lift_predictor.core.spatial.evaluation import evaluate, sample
@@ -203,7 +203,7 @@ class SpatialPredictor:
         starts = recorded_starts(task, self.grid)
         prediction = self.solve_task(task, starts, progress, begin, hops=self.options.hops)
         if not prediction.report.ok:
-            if prediction.report.status not in HOPELESS:
+            if prediction.report.status not in INFEASIBLE_STATUSES:
                 return prediction, None
             # Ground reactions were recorded with another weight.
             free = without_ground_windows(task)
@@ -275,7 +275,7 @@ class SpatialPredictor:
         best = optima[0].solution
         mass, duration = (float(v) for v in best.x[-2:])
         status, message = _judge(optima[0], check)
-        notes = (*task.notes, self.library.how)
+        notes = (*task.notes, self.library.backend)
         report = SolveReport(
             status,
             '; '.join((message, *notes)),

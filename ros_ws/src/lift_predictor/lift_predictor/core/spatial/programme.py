@@ -13,7 +13,7 @@ from human_model.typing import Array
 from lift_predictor.core.bspline import simpson_weights
 from lift_predictor.core.solvers.layout import Channel, Group
 from lift_predictor.core.solvers.library import NodeLibrary, load_library
-from lift_predictor.core.solvers.spline_programme import Assembler, SplineProgramme, make_assembler
+from lift_predictor.core.solvers.spline_nlp import Assembler, SplineNlp, make_assembler
 from lift_predictor.core.spatial.grid import (
     LIMITED,
     NODE_ROWS,
@@ -98,7 +98,7 @@ def posture_assembler(library: NodeLibrary) -> Assembler:
 
 def spatial_programme(
     assembler: Assembler, grid: SpatialGrid, parameters: SpatialParameters, bounds: SpatialBounds
-) -> SplineProgramme:
+) -> SplineNlp:
     """Programme of one person and task.
 
     Parameters
@@ -112,7 +112,7 @@ def spatial_programme(
     bounds : SpatialBounds
         Demands of the task.
     """
-    return SplineProgramme(
+    return SplineNlp(
         assembler,
         parameters.pack(),
         bounds.variables(grid),

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The lift monitor authors
 // SPDX-License-Identifier: Apache-2.0
-// Node functions mapped over the nodes of splines and gathered into a dense programme.
+// Node functions mapped over the nodes of splines and gathered into a dense problem.
 //
 // A group is one node function at many instants. The instants are sorted into batches of LANES;
 // what a batch needs of the splines is in constant tables made by layout.py:
@@ -20,7 +20,7 @@ struct group {
     double *shares;                                // tables of condense.c
 };
 
-struct programme {
+struct problem {
     int n, m, n_groups;
     struct group *groups;
     const double *parameters;
@@ -48,9 +48,9 @@ static const struct function *function_of(const struct group *g) {
     return &lift_functions[g->function];
 }
 
-static int n_out(const struct function *f) { return 1 + f->n_rows + f->n_in + f->n_jacobian; }
+static int n_out(const struct function *f) { return 1 + f->n_g + f->n_in + f->n_jacobian; }
 
-void lift_parameters(struct programme *p, const double *parameters) { p->parameters = parameters; }
+void lift_parameters(struct problem *p, const double *parameters) { p->parameters = parameters; }
 
 static int basis_size(const struct group *g) {
     int size = 0;
@@ -102,7 +102,7 @@ static void spread_back(const struct group *g, int batch, const vec *in, double 
         for (int l = 0; l < LANES; l++) x[global[(local + j) * LANES + l]] += in[at + j][l];
 }
 
-static double reduce(const struct group *g, int batch, vec cost, const vec *rows, int n_rows,
+static double reduce(const struct group *g, int batch, vec cost, const vec *constraints, int n_g,
                      double *out) {
     double sum = 0.0;
     const double *weight = g->cost_weight + (size_t)batch * LANES;
@@ -110,29 +110,29 @@ static double reduce(const struct group *g, int batch, vec cost, const vec *rows
     for (int l = 0; l < LANES; l++) {
         if (row[l] < 0) continue;
         if (weight[l] != 0.0) sum += weight[l] * cost[l];
-        for (int r = 0; r < n_rows; r++) out[row[l] + r] = rows[r][l];
+        for (int r = 0; r < n_g; r++) out[row[l] + r] = constraints[r][l];
     }
     return sum;
 }
 
-// Objective and rows.
-double lift_values(struct programme *p, const double *x, double *rows) {
+// Objective and constraints.
+double lift_values(struct problem *p, const double *x, double *constraints) {
     double objective = 0.0;
     for (int k = 0; k < p->n_groups; k++) {
         struct group *g = &p->groups[k];
         const struct function *f = function_of(g);
-        vec in[f->n_in + 1], out[1 + f->n_rows];
+        vec in[f->n_in + 1], out[1 + f->n_g];
         for (int b = 0; b < g->n_batches; b++) {
             gather(g, b, x, in);
             f->value(in, p->parameters, out);
-            objective += reduce(g, b, out[0], out + 1, f->n_rows, rows);
+            objective += reduce(g, b, out[0], out + 1, f->n_g, constraints);
         }
     }
     return objective;
 }
 
-// Objective, rows, gradient; the Jacobian is kept for the functions below.
-double lift_first(struct programme *p, const double *x, double *rows, double *gradient) {
+// Objective, constraints, gradient; the Jacobian is kept for the functions below.
+double lift_first(struct problem *p, const double *x, double *constraints, double *gradient) {
     double objective = 0.0;
     memset(gradient, 0, p->n * sizeof *gradient);
     for (int k = 0; k < p->n_groups; k++) {
@@ -144,8 +144,8 @@ double lift_first(struct programme *p, const double *x, double *rows, double *gr
             vec weight = *((const vec *)g->cost_weight + b);
             gather(g, b, x, in);
             f->first(in, p->parameters, out);
-            objective += reduce(g, b, out[0], out + 1, f->n_rows, rows);
-            for (int i = 0; i < f->n_in; i++) slope[i] = weight * out[1 + f->n_rows + i];
+            objective += reduce(g, b, out[0], out + 1, f->n_g, constraints);
+            for (int i = 0; i < f->n_in; i++) slope[i] = weight * out[1 + f->n_g + i];
             if (!g->costless) spread_back(g, b, slope, gradient);
         }
     }
@@ -153,38 +153,38 @@ double lift_first(struct programme *p, const double *x, double *rows, double *gr
 }
 
 // Jacobian times a step.
-void lift_times(struct programme *p, const double *step, double *rows) {
+void lift_times(struct problem *p, const double *step, double *constraints) {
     for (int k = 0; k < p->n_groups; k++) {
         struct group *g = &p->groups[k];
         const struct function *f = function_of(g);
-        vec in[f->n_in + 1], out[f->n_rows + 1];
+        vec in[f->n_in + 1], out[f->n_g + 1];
         for (int b = 0; b < g->n_batches; b++) {
-            const vec *slope = g->out + (size_t)b * n_out(f) + 1 + f->n_rows + f->n_in;
+            const vec *slope = g->out + (size_t)b * n_out(f) + 1 + f->n_g + f->n_in;
             gather(g, b, step, in);
             memset(out, 0, sizeof out);
             for (int i = 0; i < f->n_jacobian; i++)
                 out[f->jacobian_row[i]] += slope[i] * in[f->jacobian_column[i]];
-            reduce(g, b, out[0], out, f->n_rows, rows);
+            reduce(g, b, out[0], out, f->n_g, constraints);
         }
     }
 }
 
-static void fetch(const struct group *g, int batch, int n_rows, const double *values, vec *out) {
+static void fetch(const struct group *g, int batch, int n_g, const double *values, vec *out) {
     const int *row = g->row + (size_t)batch * LANES;
     for (int l = 0; l < LANES; l++)
-        for (int r = 0; r < n_rows; r++) out[r][l] = row[l] < 0 ? 0.0 : values[row[l] + r];
+        for (int r = 0; r < n_g; r++) out[r][l] = row[l] < 0 ? 0.0 : values[row[l] + r];
 }
 
 // Transposed Jacobian times multipliers.
-void lift_transposed(struct programme *p, const double *multiplier, double *out) {
+void lift_transposed(struct problem *p, const double *multiplier, double *out) {
     memset(out, 0, p->n * sizeof *out);
     for (int k = 0; k < p->n_groups; k++) {
         struct group *g = &p->groups[k];
         const struct function *f = function_of(g);
         vec in[f->n_in + 1];
         for (int b = 0; b < g->n_batches; b++) {
-            const vec *slope = g->out + (size_t)b * n_out(f) + 1 + f->n_rows + f->n_in;
-            fetch(g, b, f->n_rows, multiplier, g->multiplier);
+            const vec *slope = g->out + (size_t)b * n_out(f) + 1 + f->n_g + f->n_in;
+            fetch(g, b, f->n_g, multiplier, g->multiplier);
             memset(in, 0, sizeof in);
             for (int i = 0; i < f->n_jacobian; i++)
                 in[f->jacobian_column[i]] += slope[i] * g->multiplier[f->jacobian_row[i]];
@@ -193,15 +193,15 @@ void lift_transposed(struct programme *p, const double *multiplier, double *out)
     }
 }
 
-// Dense Jacobian rows of the listed rows, (count, n), which must be sorted.
-void lift_dense_rows(struct programme *p, const int *wanted, int count, double *out) {
+// Dense Jacobian of the listed constraints, (count, n), which must be sorted.
+void lift_dense_rows(struct problem *p, const int *wanted, int count, double *out) {
     memset(out, 0, (size_t)count * p->n * sizeof *out);
     for (int k = 0; k < p->n_groups; k++) {
         struct group *g = &p->groups[k];
         const struct function *f = function_of(g);
         vec in[f->n_in + 1];
         for (int b = 0; b < g->n_batches; b++) {
-            const vec *slope = g->out + (size_t)b * n_out(f) + 1 + f->n_rows + f->n_in;
+            const vec *slope = g->out + (size_t)b * n_out(f) + 1 + f->n_g + f->n_in;
             const int *row = g->row + (size_t)b * LANES;
             for (int l = 0; l < LANES; l++) {
                 if (row[l] < 0) continue;
@@ -210,7 +210,7 @@ void lift_dense_rows(struct programme *p, const int *wanted, int count, double *
                     int middle = (low + high) / 2;
                     if (wanted[middle] < row[l]) low = middle + 1; else high = middle;
                 }
-                for (; low < count && wanted[low] < row[l] + f->n_rows; low++) {
+                for (; low < count && wanted[low] < row[l] + f->n_g; low++) {
                     memset(in, 0, sizeof in);
                     for (int i = 0; i < f->n_jacobian; i++)
                         if (f->jacobian_row[i] == wanted[low] - row[l])
@@ -222,10 +222,10 @@ void lift_dense_rows(struct programme *p, const int *wanted, int count, double *
     }
 }
 
-// One function at n instants: in (n, n_in), out (n, 1 + n_rows), cost first.
+// One function at n instants: in (n, n_in), out (n, 1 + n_g), cost first.
 void lift_evaluate(int function, int n, const double *in, const double *parameters, double *out) {
     const struct function *f = &lift_functions[function];
-    vec block[f->n_in + 1], result[1 + f->n_rows];
+    vec block[f->n_in + 1], result[1 + f->n_g];
     for (int start = 0; start < n; start += LANES) {
         for (int l = 0; l < LANES; l++) {
             int at = start + l < n ? start + l : n - 1;
@@ -233,7 +233,7 @@ void lift_evaluate(int function, int n, const double *in, const double *paramete
         }
         f->value(block, parameters, result);
         for (int l = 0; l < LANES && start + l < n; l++)
-            for (int r = 0; r <= f->n_rows; r++)
-                out[(size_t)(start + l) * (1 + f->n_rows) + r] = result[r][l];
+            for (int r = 0; r <= f->n_g; r++)
+                out[(size_t)(start + l) * (1 + f->n_g) + r] = result[r][l];
     }
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The lift monitor authors
 // SPDX-License-Identifier: Apache-2.0
-// Second derivatives of the nodes, gathered into the condensed matrix of the programme.
+// Second derivatives of the nodes, gathered into the condensed matrix of the problem.
 
 #if LANES == 8
 enum { TILE = 4 };
@@ -23,12 +23,12 @@ static int pack_full_rows(const struct function *f, const vec *slope, const vec 
         for (last = first; last < f->n_jacobian && f->jacobian_row[last] == row;) last++;
         if ((last - first) * OF_INPUTS < f->n_in * FULL_ROW) continue;
         for (int panel = 0; panel < panels; panel++) {
-            size_t at = ((size_t)panel * f->n_rows + count) * TILE;
+            size_t at = ((size_t)panel * f->n_g + count) * TILE;
             for (int i = 0; i < TILE; i++) plain[at + i] = scaled[at + i] = (vec){0};
         }
         for (int i = first; i < last; i++) {
             int column = f->jacobian_column[i];
-            size_t at = ((size_t)(column / TILE) * f->n_rows + count) * TILE + column % TILE;
+            size_t at = ((size_t)(column / TILE) * f->n_g + count) * TILE + column % TILE;
             plain[at] = slope[i];
             scaled[at] = weight[row] * slope[i];
         }
@@ -37,14 +37,14 @@ static int pack_full_rows(const struct function *f, const vec *slope, const vec 
     return count;
 }
 
-// dense = sum of the weighted squares of the packed rows; the lower triangle.
+// dense = sum of the weighted squares of the packed constraints; the lower triangle.
 static void squares_of_full_rows(const struct function *f, int count, const vec *plain,
                                  const vec *scaled, vec *dense) {
     int n = f->n_in, panels = (n + TILE - 1) / TILE;
     for (int i = 0; i < panels; i++)
         for (int j = 0; j <= i; j++) {
-            const vec *left = scaled + (size_t)i * f->n_rows * TILE;
-            const vec *right = plain + (size_t)j * f->n_rows * TILE;
+            const vec *left = scaled + (size_t)i * f->n_g * TILE;
+            const vec *right = plain + (size_t)j * f->n_g * TILE;
             vec sum[TILE][TILE] = {{{0}}};
             for (int r = 0; r < count; r++, left += TILE, right += TILE)
 #pragma GCC unroll 4
@@ -58,10 +58,10 @@ static void squares_of_full_rows(const struct function *f, int count, const vec 
 }
 
 // Node matrix (n_in, n_in), lower triangle: Hessian of the Lagrangian and weighted squares.
-static void node_matrix(struct programme *p, struct group *g, int b, vec *dense) {
+static void node_matrix(struct problem *p, struct group *g, int b, vec *dense) {
     const struct function *f = function_of(g);
     const vec *in = g->in + (size_t)b * f->n_in;
-    const vec *slope = g->out + (size_t)b * n_out(f) + 1 + f->n_rows + f->n_in;
+    const vec *slope = g->out + (size_t)b * n_out(f) + 1 + f->n_g + f->n_in;
     int n = f->n_in;
     int count = pack_full_rows(f, slope, g->weight, p->plain, p->scaled);
     squares_of_full_rows(f, count, p->plain, p->scaled, dense);
@@ -211,7 +211,7 @@ static void add_batch(const struct group *g, int batch, const vec *dense, int n_
 }
 
 // sigma Hess f + sum multiplier_i Hess g_i + sum weight_i J_i' J_i at the last point of lift_first.
-void lift_condensed(struct programme *p, double sigma, const double *multiplier,
+void lift_condensed(struct problem *p, double sigma, const double *multiplier,
                     const double *weight, double *out) {
     double *square = p->square;
     int n = p->n;
@@ -221,8 +221,8 @@ void lift_condensed(struct programme *p, double sigma, const double *multiplier,
         const struct function *f = function_of(g);
         for (int b = 0; b < g->n_batches; b++) {
             g->multiplier[0] = sigma * *((const vec *)g->cost_weight + b);
-            fetch(g, b, f->n_rows, multiplier, g->multiplier + 1);
-            fetch(g, b, f->n_rows, weight, g->weight);
+            fetch(g, b, f->n_g, multiplier, g->multiplier + 1);
+            fetch(g, b, f->n_g, weight, g->weight);
             node_matrix(p, g, b, p->dense);
             add_batch(g, b, p->dense, f->n_in, square, n);
         }
@@ -237,7 +237,7 @@ void lift_condensed(struct programme *p, double sigma, const double *multiplier,
 
 // ---- work space -------------------------------------------------------------------------------
 
-void lift_close(struct programme *p) {
+void lift_close(struct problem *p) {
     if (!p) return;
     for (int k = 0; p->groups && k < p->n_groups; k++) {
         struct group *g = &p->groups[k];
@@ -247,9 +247,9 @@ void lift_close(struct programme *p) {
     free(p->groups), free(p->dense), free(p->plain), free(p->scaled), free(p->square), free(p);
 }
 
-// A programme with work space of its own; the tables must live as long. NULL: no memory.
-struct programme *lift_open(int n, int m, int n_groups, const struct group *groups) {
-    struct programme *p = calloc(1, sizeof *p);
+// A problem with work space of its own; the tables must live as long. NULL: no memory.
+struct problem *lift_open(int n, int m, int n_groups, const struct group *groups) {
+    struct problem *p = calloc(1, sizeof *p);
     if (!p) return NULL;
     p->n = n, p->m = m, p->n_groups = n_groups;
     p->groups = calloc(n_groups, sizeof *groups);
@@ -262,14 +262,14 @@ struct programme *lift_open(int n, int m, int n_groups, const struct group *grou
         const struct function *f = function_of(g);
         g->in = room((size_t)g->n_batches * f->n_in);
         g->out = room((size_t)g->n_batches * n_out(f));
-        g->multiplier = room(1 + f->n_rows);
-        g->weight = room(1 + f->n_rows);
+        g->multiplier = room(1 + f->n_g);
+        g->weight = room(1 + f->n_g);
         g->second = room(f->n_hessian);
         g->shares = room(g->n_batches * shares_of_batch(g) / LANES);
         ok = g->in && g->out && g->multiplier && g->weight && g->second && g->shares;
         if (ok) fill_shares(g, g->shares);
         if (f->n_in > in) in = f->n_in;
-        size_t size = (size_t)(f->n_in + TILE) * f->n_rows;
+        size_t size = (size_t)(f->n_in + TILE) * f->n_g;
         if (size > packed) packed = size;
     }
     p->dense = room((size_t)in * in);

@@ -4,11 +4,11 @@
 
 // ---- feasibility restoration --------------------------------------------------------------------
 
-static double violation_of(const struct solver *s, const double *rows, double *out) {
+static double violation_of(const struct solver *s, const double *g, double *out) {
     double sum = 0.0;
-    for (int k = 0; k < s->n_equal; k++) out[s->equal[k]] = rows[s->equal[k]] - s->target[k];
+    for (int k = 0; k < s->n_equal; k++) out[s->equal[k]] = g[s->equal[k]] - s->target[k];
     for (int k = 0; k < s->n_slack; k++) {
-        double value = rows[s->unequal[k]];
+        double value = g[s->unequal[k]];
         double nearest = smaller(larger(value, s->low[s->n + k]), s->high[s->n + k]);
         out[s->unequal[k]] = value - nearest;
     }
@@ -16,12 +16,12 @@ static double violation_of(const struct solver *s, const double *rows, double *o
     return 0.5 * sum;
 }
 
-// Reduce half the squared violation of the rows; x in v. 1 if it has a minimum there.
+// Reduce half the squared violation of the constraints; x in v. 1 if it has a minimum there.
 static int restore(struct solver *s, double goal, int limit) {
     int n = s->n, stalled = 0, *held = (int *)s->eq_work;
     double damping = 1e-6, *violation = s->residual, *x = s->v, *gradient = s->free_work;
-    scaled_values(s, x, s->rows);
-    double value = violation_of(s, s->rows, violation);
+    scaled_values(s, x, s->g);
+    double value = violation_of(s, s->g, violation);
     while (limit-- > 0) {
         double most = largest(violation, s->m);
         if (most <= goal || late(s) || cancelled(s)) return 0;
@@ -36,7 +36,7 @@ static int restore(struct solver *s, double goal, int limit) {
         if (steep <= 1e-8 * larger(1.0, most) || sum <= 0.1 * value) return 1;
         s->iterations++;
         for (int r = 0; r < s->m; r++)
-            s->row_work[r] = violation[r] != 0.0 ? s->row_scale[r] * s->row_scale[r] : 0.0;
+            s->row_work[r] = violation[r] != 0.0 ? s->g_scale[r] * s->g_scale[r] : 0.0;
         condensed(s, 0.0, violation, s->row_work);
         double size = 1.0;
         for (int i = 0; i < n; i++) {
@@ -73,14 +73,14 @@ static int restore(struct solver *s, double goal, int limit) {
 static int leave_dead_end(struct solver *s) {
     struct errors e = measure(s);
     if (scaled_error(s, &e, 0.0) <= 100.0 * s->set.tolerance) return OPTIMAL;
-    double theta = rows_residual(s, s->rows, s->v, s->residual);
+    double theta = rows_residual(s, s->g, s->v, s->residual);
     if (theta <= s->set.tolerance || ++s->restorations > MAX_RESTORATIONS) return STUCK;
     filter_add(s, theta, barrier_objective(s, s->objective, s->v));
     int minimum = restore(s, 0.1 * s->set.infeasible_violation,
                           s->set.max_iterations - s->iterations);
     for (int i = 0; i < s->n; i++) s->v[i] = inside(s->v[i], s->low[i], s->high[i], 1e-8);
     linearise(s, s->v);
-    violation_of(s, s->rows, s->residual);
+    violation_of(s, s->g, s->residual);
     double most = largest(s->residual, s->m);
     slacks_from_rows(s, 1e-4);
     first_multipliers(s);
@@ -91,7 +91,7 @@ static int leave_dead_end(struct solver *s) {
 // ---- the method -------------------------------------------------------------------------------
 
 static int iterate(struct solver *s) {
-    if (!isfinite(s->objective) || !isfinite(largest(s->rows, s->m))) return NOT_FINITE;
+    if (!isfinite(s->objective) || !isfinite(largest(s->g, s->m))) return NOT_FINITE;
     for (;;) {
         struct errors e = measure(s);
         if (scaled_error(s, &e, 0.0) <= s->set.tolerance) return OPTIMAL;
@@ -117,7 +117,7 @@ static int iterate(struct solver *s) {
 static void start(struct solver *s, const double *x0, const double *y, const double *z) {
     struct settings *set = &s->set;
     int n = s->n;
-    lift_first(s->p, s->fixed, s->rows, s->full2);
+    lift_first(s->p, s->fixed, s->g, s->full2);
     double steep = 0.0;
     for (int i = 0; i < n; i++) steep = larger(steep, fabs(s->full2[s->free[i]]));
     s->objective_scale = steep > set->gradient_limit ? set->gradient_limit / steep : 1.0;
@@ -126,8 +126,8 @@ static void start(struct solver *s, const double *x0, const double *y, const dou
         double most = set->gradient_limit;
         for (int i = 0; i < n; i++)
             most = larger(most, fabs(s->jacobian[(size_t)k * s->n_all + s->free[i]]));
-        s->row_scale[s->equal[k]] = set->gradient_limit / most;
-        s->target[k] *= s->row_scale[s->equal[k]];
+        s->g_scale[s->equal[k]] = set->gradient_limit / most;
+        s->target[k] *= s->g_scale[s->equal[k]];
     }
     for (int i = n; i < s->n_v; i++) {
         s->low[i] -= 1e-8 * larger(1.0, fabs(s->low[i]));
@@ -140,7 +140,7 @@ static void start(struct solver *s, const double *x0, const double *y, const dou
     s->mu = set->barrier;
     first_multipliers(s);
     if (set->warm) {
-        for (int r = 0; r < s->m; r++) s->y[r] = s->objective_scale * y[r] / s->row_scale[r];
+        for (int r = 0; r < s->m; r++) s->y[r] = s->objective_scale * y[r] / s->g_scale[r];
         for (int i = 0; i < s->n_v; i++) {
             double bound = i < n ? s->objective_scale * z[s->free[i]] : s->y[s->unequal[i - n]];
             double low = s->v[i] - s->low[i], high = s->high[i] - s->v[i];
@@ -148,21 +148,21 @@ static void start(struct solver *s, const double *x0, const double *y, const dou
             s->zu[i] = isfinite(high) ? larger(bound, s->mu / high) : 0.0;
         }
     }
-    double theta = rows_residual(s, s->rows, s->v, s->residual);
+    double theta = rows_residual(s, s->g, s->v, s->residual);
     s->theta_largest = 1e4 * larger(1.0, theta), s->theta_small = 1e-4 * larger(1.0, theta);
 }
 
 // Unscaled result; see Solution in solution.py.
 static void finish(struct solver *s, const double *lower, const double *upper,
-                   const double *row_lower, const double *row_upper, double *x, double *y,
-                   double *z, struct outcome *out) {
+                   const double *g_lower, const double *g_upper, double *x, double *y,
+                   double *z, struct result *out) {
     memcpy(x, complete(s, s->v), s->n_all * sizeof(double));
     for (int i = 0; i < s->n_all; i++) x[i] = smaller(larger(x[i], lower[i]), upper[i]);
-    out->objective = lift_first(s->p, x, s->rows, s->full);
+    out->objective = lift_first(s->p, x, s->g, s->full);
     out->primal = 0.0;
     for (int r = 0; r < s->m; r++) {
-        y[r] = s->row_scale[r] * s->y[r] / s->objective_scale;
-        out->primal = larger(out->primal, larger(row_lower[r] - s->rows[r], s->rows[r] - row_upper[r]));
+        y[r] = s->g_scale[r] * s->y[r] / s->objective_scale;
+        out->primal = larger(out->primal, larger(g_lower[r] - s->g[r], s->g[r] - g_upper[r]));
     }
     lift_transposed(s->p, y, s->full2);
     for (int i = 0; i < s->n_all; i++) z[i] = -(s->full[i] + s->full2[i]);
@@ -179,20 +179,20 @@ static void finish(struct solver *s, const double *lower, const double *upper,
 }
 
 // Solve; x0 in x, multipliers of a warm start in y and z; results in the same. 1: no memory.
-int lift_solve(struct programme *p, const double *lower, const double *upper,
-               const double *row_lower, const double *row_upper, const struct settings *set,
-               double *x, double *y, double *z, struct outcome *out) {
+int lift_solve(struct problem *p, const double *lower, const double *upper,
+               const double *g_lower, const double *g_upper, const struct settings *set,
+               double *x, double *y, double *z, struct result *out) {
     struct solver s = {.p = p, .set = *set, .m = p->m, .n_all = p->n, .start_time = now()};
     int n_all = p->n, m = p->m, q = 0, n = 0;
     for (int i = 0; i < n_all; i++) n += lower[i] != upper[i];
-    for (int r = 0; r < m; r++) q += row_lower[r] == row_upper[r];
+    for (int r = 0; r < m; r++) q += g_lower[r] == g_upper[r];
     s.n = n, s.n_equal = q, s.n_slack = m - q, s.n_v = n + m - q;
     size_t n_v = s.n_v, square = (size_t)n * n, eq = (size_t)q * n_all;
     size_t work = (size_t)q * q > (size_t)n ? (size_t)q * q : (size_t)n;
     double **arrays[] = {
         &s.low, &s.high, &s.v, &s.zl, &s.zu, &s.dv, &s.dzl, &s.dzu, &s.sigma, &s.trial_v,
         &s.barrier,
-        &s.row_scale, &s.y, &s.dy, &s.rows, &s.residual, &s.residual2, &s.trial_rows,
+        &s.g_scale, &s.y, &s.dy, &s.g, &s.residual, &s.residual2, &s.trial_rows,
         &s.row_work, &s.row_work2,
         &s.full, &s.full2, &s.gradient, &s.free_work, &s.free_work2,
         &s.jacobian, &s.equality, &s.inner,
@@ -221,16 +221,16 @@ int lift_solve(struct programme *p, const double *lower, const double *upper,
         s.low[n] = lower[i], s.high[n] = upper[i], s.free[n++] = i;
     }
     for (int r = 0, k = 0; r < m; r++) {
-        s.row_scale[r] = 1.0;
-        if (row_lower[r] == row_upper[r]) {
-            s.target[q] = row_lower[r], s.equal[q++] = r;
+        s.g_scale[r] = 1.0;
+        if (g_lower[r] == g_upper[r]) {
+            s.target[q] = g_lower[r], s.equal[q++] = r;
         } else {
-            s.low[n + k] = row_lower[r], s.high[n + k] = row_upper[r], s.unequal[k++] = r;
+            s.low[n + k] = g_lower[r], s.high[n + k] = g_upper[r], s.unequal[k++] = r;
         }
     }
     start(&s, x, y, z);
     out->status = iterate(&s);
-    finish(&s, lower, upper, row_lower, row_upper, x, y, z, out);
+    finish(&s, lower, upper, g_lower, g_upper, x, y, z, out);
     free(memory), free(indices), free(fixed);
     return 0;
 }

@@ -58,10 +58,10 @@ static inline vec v_sign(vec a) { return truth(a > 0.0) - truth(a < 0.0); }
 // A node function: inputs in (z, s) of n_in values, parameters, outputs; see node_function.py.
 struct function {
     const char *name;
-    int n_in, n_parameters, n_rows, n_jacobian, n_hessian;
+    int n_in, n_parameters, n_g, n_jacobian, n_hessian;
     const int *jacobian_row, *jacobian_column;  // sorted by row
     const int *hessian_row, *hessian_column;    // lower triangle
-    void (*value)(const vec *in, const double *p, vec *out);   // cost, rows
-    void (*first)(const vec *in, const double *p, vec *out);   // cost, rows, gradient, Jacobian
+    void (*value)(const vec *in, const double *p, vec *out);   // cost, g
+    void (*first)(const vec *in, const double *p, vec *out);   // cost, g, gradient, Jacobian
     void (*second)(const vec *in, const double *p, const vec *multiplier, vec *out);
 };

@@ -4,17 +4,17 @@
 
 // ---- measures of the iterate ----------------------------------------------------------------
 
-static double rows_residual(const struct solver *s, const double *rows, const double *v,
+static double rows_residual(const struct solver *s, const double *g, const double *v,
                             double *out) {
     double sum = 0.0;
     for (int k = 0; k < s->n_equal; k++) {
         int r = s->equal[k];
-        out[r] = rows[r] - s->target[k];
+        out[r] = g[r] - s->target[k];
         sum += fabs(out[r]);
     }
     for (int k = 0; k < s->n_slack; k++) {
         int r = s->unequal[k];
-        out[r] = rows[r] - v[s->n + k];
+        out[r] = g[r] - v[s->n + k];
         sum += fabs(out[r]);
     }
     return sum;
@@ -38,7 +38,7 @@ struct errors { double primal, dual, sum_y, sum_z, low_product, high_product; in
 static struct errors measure(struct solver *s) {
     struct errors e = {0};
     e.low_product = DBL_MAX, e.high_product = -DBL_MAX;
-    rows_residual(s, s->rows, s->v, s->residual);
+    rows_residual(s, s->g, s->v, s->residual);
     e.primal = largest(s->residual, s->m);
     jacobian_transposed(s, s->y, s->free_work);
     for (int i = 0; i < s->n_v; i++) {

@@ -16,25 +16,25 @@ struct settings {
     const volatile int *stop;  // set by another thread that wants the work to end; or NULL
 };
 
-struct outcome {
+struct result {
     int status, iterations;
     double objective, primal, dual, complementarity;
 };
 
 // v = (free variables, slacks); all arrays of it have n_v elements.
 struct solver {
-    struct programme *p;
+    struct problem *p;
     struct settings set;
     int n, m, n_equal, n_slack, n_v, n_all;
     int *free, *equal, *unequal;
     const double *fixed;  // values of all variables, of which the free ones are replaced
-    double objective_scale, *row_scale, *low, *high, *target;
+    double objective_scale, *g_scale, *low, *high, *target;
     double mu, last_shift, start_time;
     int iterations, restorations, n_filter, n_short;
     double filter_theta[FILTER_ROOM], filter_phi[FILTER_ROOM], theta_largest, theta_small;
     // Iterate, step, second step (correction), derivatives at the iterate.
     double *v, *y, *zl, *zu, *dv, *dy, *dzl, *dzu;
-    double objective, *rows, *gradient, *jacobian, *equality;
+    double objective, *g, *gradient, *jacobian, *equality;
     double *sigma, *residual, *residual2, *trial_v, *trial_rows, *barrier;
     double *row_work, *row_work2, *full, *full2, *free_work, *free_work2, *eq_work;
     double *matrix, *factor, *big, *inner, *schur;
@@ -128,7 +128,7 @@ static double largest(const double *a, int n) {
     return most;
 }
 
-// ---- the programme, scaled and without fixed variables --------------------------------------
+// ---- the problem, scaled and without fixed variables --------------------------------------
 
 static const double *complete(struct solver *s, const double *x) {
     memcpy(s->full, s->fixed, s->n_all * sizeof(double));
@@ -136,32 +136,32 @@ static const double *complete(struct solver *s, const double *x) {
     return s->full;
 }
 
-static void scale_rows(const struct solver *s, double *rows) {
-    for (int k = 0; k < s->n_equal; k++) rows[s->equal[k]] *= s->row_scale[s->equal[k]];
+static void scale_rows(const struct solver *s, double *g) {
+    for (int k = 0; k < s->n_equal; k++) g[s->equal[k]] *= s->g_scale[s->equal[k]];
 }
 
-static double scaled_values(struct solver *s, const double *x, double *rows) {
-    double f = lift_values(s->p, complete(s, x), rows);
-    scale_rows(s, rows);
+static double scaled_values(struct solver *s, const double *x, double *g) {
+    double f = lift_values(s->p, complete(s, x), g);
+    scale_rows(s, g);
     return s->objective_scale * f;
 }
 
 static void linearise(struct solver *s, const double *x) {
-    s->objective = s->objective_scale * lift_first(s->p, complete(s, x), s->rows, s->full2);
-    scale_rows(s, s->rows);
+    s->objective = s->objective_scale * lift_first(s->p, complete(s, x), s->g, s->full2);
+    scale_rows(s, s->g);
     for (int i = 0; i < s->n; i++) s->gradient[i] = s->objective_scale * s->full2[s->free[i]];
     lift_dense_rows(s->p, s->equal, s->n_equal, s->jacobian);
     for (int k = 0; k < s->n_equal; k++)
         for (int i = 0; i < s->n; i++)
             s->equality[(size_t)k * s->n + i] =
-                s->row_scale[s->equal[k]] * s->jacobian[(size_t)k * s->n_all + s->free[i]];
+                s->g_scale[s->equal[k]] * s->jacobian[(size_t)k * s->n_all + s->free[i]];
 }
 
-static void jacobian_times(struct solver *s, const double *step, double *rows) {
+static void jacobian_times(struct solver *s, const double *step, double *g) {
     memset(s->full, 0, s->n_all * sizeof(double));
     for (int i = 0; i < s->n; i++) s->full[s->free[i]] = step[i];
-    lift_times(s->p, s->full, rows);
-    scale_rows(s, rows);
+    lift_times(s->p, s->full, g);
+    scale_rows(s, g);
 }
 
 // Overwrites the multipliers with scaled ones and scales them back.

@@ -20,7 +20,7 @@ static double inside(double value, double low, double high, double push) {
 static void slacks_from_rows(struct solver *s, double push) {
     for (int k = 0; k < s->n_slack; k++) {
         int i = s->n + k;
-        s->v[i] = inside(s->rows[s->unequal[k]], s->low[i], s->high[i], push);
+        s->v[i] = inside(s->g[s->unequal[k]], s->low[i], s->high[i], push);
     }
 }
 
@@ -87,7 +87,7 @@ static int factorise(struct solver *s) {
     return 1;
 }
 
-// Newton step for the given residual of the rows, into dv, dy, dzl, dzu.
+// Newton step for the given residual of the constraints, into dv, dy, dzl, dzu.
 static void newton_step(struct solver *s, const double *residual) {
     int n = s->n, q = s->n_equal;
     double *right = s->dv;
@@ -184,7 +184,7 @@ static int correct(struct solver *s, double alpha, double theta, double phi, dou
 }
 
 static int line_search(struct solver *s) {
-    double slope = 0.0, theta = rows_residual(s, s->rows, s->v, s->residual);
+    double slope = 0.0, theta = rows_residual(s, s->g, s->v, s->residual);
     double phi = barrier_objective(s, s->objective, s->v);
     int tiny = 1;
     for (int i = 0; i < s->n_v; i++) {

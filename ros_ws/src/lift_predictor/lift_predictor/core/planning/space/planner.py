@@ -12,7 +12,7 @@ from human_model.report import SolveReport, SolveStatus
 from human_model.subject import Subject
 from lift_predictor.core.exceptions import TaskError, UnreachableError
 from lift_predictor.core.maximum_weight import Weighting
-from lift_predictor.core.nearest_lift import HOPELESS, with_nearest
+from lift_predictor.core.nearest_lift import INFEASIBLE_STATUSES, with_nearest
 from lift_predictor.core.planning.feet import Placement
 from lift_predictor.core.planning.plan_task import PlanTask
 from lift_predictor.core.planning.planned_lift import SpatialPlan
@@ -44,7 +44,7 @@ def plan_in_space(
     """Plan a lift in space; see `LiftPlanner.plan`."""
     planned, feet = _plan(predictor, subject, task, weighting, listener)
     failed = planned.prediction
-    if failed.report.status not in HOPELESS:
+    if failed.report.status not in INFEASIBLE_STATUSES:
         return planned
 
     def attempt(other: PlanTask) -> PredictedLift3D:

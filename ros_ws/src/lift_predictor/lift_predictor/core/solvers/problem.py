@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a nonlinear programme must offer to the solvers of this package.
+"""Interface of a nonlinear problem (NLP) for the solvers of this package.
 
-Minimise f(x) with lower <= x <= upper and row_lower <= g(x) <= row_upper. Equal bounds fix a
-variable or make an equality row; infinite ones are allowed.
+Minimise f(x) with lower <= x <= upper and g_lower <= g(x) <= g_upper. Equal bounds fix a
+variable or make an equality constraint; infinite ones are allowed.
 """
 
 from __future__ import annotations
@@ -14,44 +14,44 @@ from human_model.typing import Array
 
 
 class Linearisation(Protocol):
-    """Derivatives of a programme at one point x.
+    """Derivatives of a problem at one point x.
 
     Attributes
     ----------
     objective : float
         f(x).
-    rows : array, shape (m,)
+    g : array, shape (m,)
         g(x).
     gradient : array, shape (n,)
         Gradient of f.
     equality : array, shape (n_equalities, n)
-        Dense Jacobian of the equality rows, in their order.
+        Dense Jacobian of the equality constraints, in their order.
     """
 
     objective: float
-    rows: Array
+    g: Array
     gradient: Array
     equality: Array
 
     def times(self, step: Array) -> Array:
-        """Jacobian of all rows times a step (n,): shape (m,)."""
+        """Jacobian of all constraints times a step (n,): shape (m,)."""
         ...
 
     def transposed(self, multiplier: Array) -> Array:
-        """Transposed Jacobian of all rows times multipliers (m,): shape (n,)."""
+        """Transposed Jacobian of all constraints times multipliers (m,): shape (n,)."""
         ...
 
     def condensed(self, sigma: float, multiplier: Array, weight: Array) -> Array:
-        """Hessian of the Lagrangian and weighted outer products of the rows' gradients.
+        """Hessian of the Lagrangian and weighted outer products of the constraints' gradients.
 
         Parameters
         ----------
         sigma : float
             Factor of the objective.
         multiplier : array, shape (m,)
-            Factors of the rows' Hessians.
+            Factors of the constraints' Hessians.
         weight : array, shape (m,)
-            Factors of J_i' J_i; also of equality rows, where the solver may put one.
+            Factors of J_i' J_i; also of equality constraints, where the solver may put one.
 
         Returns
         -------
@@ -61,8 +61,8 @@ class Linearisation(Protocol):
         ...
 
 
-class Programme(Protocol):
-    """A nonlinear programme.
+class NlpProblem(Protocol):
+    """A nonlinear problem.
 
     Attributes
     ----------
@@ -70,18 +70,18 @@ class Programme(Protocol):
         Number of variables.
     lower, upper : array, shape (n,)
         Bounds of the variables.
-    row_lower, row_upper : array, shape (m,)
-        Bounds of the rows.
+    g_lower, g_upper : array, shape (m,)
+        Bounds of the constraints.
     """
 
     n: int
     lower: Array
     upper: Array
-    row_lower: Array
-    row_upper: Array
+    g_lower: Array
+    g_upper: Array
 
-    def row_name(self, index: int) -> str:
-        """Name of a row, for messages."""
+    def constraint_name(self, index: int) -> str:
+        """Name of a constraint, for messages."""
         ...
 
     def variable_name(self, index: int) -> str:
@@ -89,7 +89,7 @@ class Programme(Protocol):
         ...
 
     def values(self, x: Array) -> tuple[float, Array]:
-        """Objective and rows (m,) at x; not finite where the functions are not defined."""
+        """Objective and constraints (m,) at x; not finite where the functions are not defined."""
         ...
 
     def linearise(self, x: Array) -> Linearisation:

@@ -11,14 +11,14 @@ from typing import Final
 
 from human_model.typing import Array
 
-FEASIBLE: Final = 1e-5
-"""Largest violation of a scaled constraint row that counts as met."""
-BINDING: Final = 1e-5
-"""Smallest multiplier of a limit that counts as binding: far above what the barrier leaves."""
+FEASIBILITY_TOLERANCE: Final = 1e-5
+"""Largest violation of a scaled constraint that counts as met."""
+ACTIVE_MULTIPLIER: Final = 1e-5
+"""Smallest multiplier of an active constraint: far above what the barrier leaves."""
 
 
 Progress = Callable[[int, int, float], None]
-"""Told after each run: starts tried, starts in all, best objective so far (NaN: none yet)."""
+"""Called after each run: starts tried, number of starts, best objective so far (NaN: none yet)."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Start:
 
 
 @dataclass(frozen=True)
-class Optimum:
+class SolverRun:
     """Where one run of an optimiser ended.
 
     Attributes
@@ -45,9 +45,9 @@ class Optimum:
     start : str
         Name of the start.
     converged : bool
-        Whether the optimiser reports a solution and its constraints hold to `FEASIBLE`.
-    outcome : str
-        The optimiser's own words.
+        Whether the solver reports a solution within `FEASIBILITY_TOLERANCE`.
+    status : str
+        Status of the solver, in its own terms.
     control : array, shape (n_free, 6)
         Free control values [rad].
     box_mass : float
@@ -57,10 +57,10 @@ class Optimum:
     iterations : int
         Iterations.
     violation : float
-        Largest violation of a bound or scaled row.
+        Largest violation of a bound or scaled constraint.
     violated : str
-        Name of that row; empty when nothing is violated.
-    binding : tuple of (str, float)
+        Name of that constraint; empty when nothing is violated.
+    active_constraints : tuple of (str, float)
         Limits that hold the objective back, with their multipliers, the strongest first.
     stationarity, complementarity : float
         Largest element of the Lagrangian's gradient, and of multiplier times slack.
@@ -70,14 +70,14 @@ class Optimum:
 
     start: str
     converged: bool
-    outcome: str
+    status: str
     control: Array
     box_mass: float
     objective: float
     iterations: int
     violation: float
     violated: str
-    binding: tuple[tuple[str, float], ...]
+    active_constraints: tuple[tuple[str, float], ...]
     stationarity: float
     complementarity: float
     solve_time: float
@@ -89,10 +89,10 @@ class Optimum:
 
 def runs_until(
     deadline: float,
-    run: Callable[[Start], Optimum],
+    run: Callable[[Start], SolverRun],
     starts: Sequence[Start],
     progress: Progress | None = None,
-) -> list[Optimum]:
+) -> list[SolverRun]:
     """Run from every start in turn; none but the first is begun after the deadline.
 
     Parameters
@@ -104,9 +104,9 @@ def runs_until(
     starts : sequence of Start
         The most promising first.
     progress : callable, optional
-        Told after each run; what it raises ends the work.
+        Called after each run; an exception of it ends the work.
     """
-    runs: list[Optimum] = []
+    runs: list[SolverRun] = []
     for start in starts:
         if runs and time.perf_counter() > deadline:
             break
@@ -116,13 +116,13 @@ def runs_until(
     return runs
 
 
-def best_first(runs: Sequence[Optimum]) -> tuple[Optimum, ...]:
+def best_first(runs: Sequence[SolverRun]) -> tuple[SolverRun, ...]:
     """Sort converged runs first, by objective; the others by violation."""
     return tuple(
         sorted(runs, key=lambda r: (not r.converged, r.objective if r.converged else r.violation))
     )
 
 
-def best_objective(runs: Sequence[Optimum]) -> float:
+def best_objective(runs: Sequence[SolverRun]) -> float:
     """Objective of the best converged run; NaN: none."""
     return min((run.objective for run in runs if run.converged), default=float('nan'))

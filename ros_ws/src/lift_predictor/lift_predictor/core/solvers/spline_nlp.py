@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""A nonlinear programme made of node functions on splines, for any backend."""
+"""A nonlinear problem made of node functions on splines, for any backend."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from lift_predictor.core.solvers.library import NodeLibrary
 
 
 class Assembler(Protocol):
-    """What computes objective, rows and derivatives; see `CompiledAssembler`."""
+    """What computes objective, constraints and derivatives; see `CompiledAssembler`."""
 
     n: int
     m: int
@@ -27,11 +27,11 @@ class Assembler(Protocol):
         ...
 
     def values(self, x: Array) -> tuple[float, Array]:
-        """Objective and rows."""
+        """Objective and constraints."""
         ...
 
     def first(self, x: Array) -> tuple[float, Array, Array]:
-        """Objective, rows, gradient; the point of the following calls."""
+        """Objective, constraints, gradient; the point of the following calls."""
         ...
 
     def times(self, step: Array) -> Array:
@@ -43,11 +43,11 @@ class Assembler(Protocol):
         ...
 
     def dense_rows(self, wanted: NDArray[np.int32]) -> Array:
-        """Dense Jacobian of some rows (sorted indices)."""
+        """Dense Jacobian of some constraints (sorted indices)."""
         ...
 
     def condensed(self, sigma: float, multiplier: Array, weight: Array) -> Array:
-        """Hessian of the Lagrangian and weighted squares of the rows."""
+        """Hessian of the Lagrangian and weighted squares of the constraints."""
         ...
 
 
@@ -61,20 +61,20 @@ def make_assembler(library: NodeLibrary, groups: Sequence[Group], n: int) -> Ass
     return VirtualAssembler(library, groups, n)
 
 
-class SplineProgramme:
-    """A programme of groups of node functions, with bounds and parameters.
+class SplineNlp:
+    """A problem of groups of node functions, with bounds and parameters.
 
     Parameters
     ----------
     assembler : Assembler
-        From `make_assembler`; several programmes may share one, used one after the other.
+        From `make_assembler`; several problems may share one, used one after the other.
     parameters : array
         Person and task.
     lower, upper : array, shape (n,)
         Bounds of the variables.
-    row_lower, row_upper : array, shape (m,)
-        Bounds of the rows, group by group, instant by instant.
-    row_name, variable_name : callable
+    g_lower, g_upper : array, shape (m,)
+        Bounds of the constraints, group by group, instant by instant.
+    constraint_name, variable_name : callable
         Names by index.
     """
 
@@ -83,25 +83,25 @@ class SplineProgramme:
         assembler: Assembler,
         parameters: Array,
         variables: tuple[Array, Array],
-        rows: tuple[Array, Array],
-        row_name: Callable[[int], str],
+        g: tuple[Array, Array],
+        constraint_name: Callable[[int], str],
         variable_name: Callable[[int], str],
     ) -> None:
         self.assembler, self.parameters = assembler, np.array(parameters, dtype=float)
         self.n = assembler.n
         self.lower, self.upper = (np.array(bound, dtype=float) for bound in variables)
-        self.row_lower, self.row_upper = (np.array(bound, dtype=float) for bound in rows)
-        self.row_name, self.variable_name = row_name, variable_name
-        self.equal = np.flatnonzero(self.row_lower == self.row_upper).astype(np.int32)
-        if self.lower.shape != (self.n,) or self.row_lower.shape != (assembler.m,):
+        self.g_lower, self.g_upper = (np.array(bound, dtype=float) for bound in g)
+        self.constraint_name, self.variable_name = constraint_name, variable_name
+        self.equal = np.flatnonzero(self.g_lower == self.g_upper).astype(np.int32)
+        if self.lower.shape != (self.n,) or self.g_lower.shape != (assembler.m,):
             raise ValueError(
-                f'bounds of {len(self.lower)} variables and {len(self.row_lower)} rows for a '
-                f'programme of {self.n} and {assembler.m}'
+                f'bounds of {len(self.lower)} variables and {len(self.g_lower)} constraints for a '
+                f'problem of {self.n} and {assembler.m}'
             )
         assembler.set_parameters(self.parameters)
 
     def values(self, x: Array) -> tuple[float, Array]:
-        """Objective and rows."""
+        """Objective and constraints."""
         return self.assembler.values(x)
 
     def linearise(self, x: Array) -> SplinePoint:
@@ -110,12 +110,12 @@ class SplineProgramme:
 
 
 class SplinePoint:
-    """Derivatives of a `SplineProgramme` at its last point."""
+    """Derivatives of a `SplineNlp` at its last point."""
 
-    def __init__(self, programme: SplineProgramme, x: Array) -> None:
-        self._assembler = programme.assembler
-        self.objective, self.rows, self.gradient = self._assembler.first(x)
-        self.equality = self._assembler.dense_rows(programme.equal)
+    def __init__(self, problem: SplineNlp, x: Array) -> None:
+        self._assembler = problem.assembler
+        self.objective, self.g, self.gradient = self._assembler.first(x)
+        self.equality = self._assembler.dense_rows(problem.equal)
         self.times = self._assembler.times
         self.transposed = self._assembler.transposed
         self.condensed = self._assembler.condensed
