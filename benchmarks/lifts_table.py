@@ -16,8 +16,8 @@ from pathlib import Path
 
 import numpy as np
 
-from lifting_bringup.offline import run_offline
-from lifting_bringup.results_file import MEASURED, PREDICTED, read_results
+from lifting_cli.offline import run_offline
+from lifting_report.results_file import MEASURED, PREDICTED, read_results
 
 BAGS = Path(__file__).resolve().parents[1] / 'bags'
 LIFTS = ('symmetric_7kg', 'symmetric_12kg', 'symmetric_max', 'asymmetric_7kg')

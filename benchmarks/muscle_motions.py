@@ -16,7 +16,7 @@ from typing import Final
 
 import numpy as np
 
-from lifting_bringup.recorded_lifts import recorded_lifts
+from lifting_cli.recorded_lifts import recorded_lifts
 from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
 from muscle_analyzer.core.multibody.model import compile_model
 from muscle_analyzer.core.opensim_bridge.derivatives import smooth

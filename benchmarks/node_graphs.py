@@ -32,9 +32,9 @@ from std_msgs.msg import Header
 from std_srvs.srv import SetBool
 
 from human_model.typing import Array
-from lifting_bringup.graph import Graph
-from lifting_bringup.node_process import PARAMETERS, NodeProcess, discovery, start_module
-from lifting_bringup.session import summarise
+from lifting_cli.graph import Graph
+from lifting_cli.node_process import PARAMETERS, NodeProcess, discovery, start_module
+from lifting_cli.session import summarise
 from lifting_node import qos
 
 ROOT: Final = Path(__file__).resolve().parents[1]
@@ -107,9 +107,7 @@ class Station:
             'play', str(bag), '--station', self.name, '--start-paused', '--wait-timeout', '60',
             '--wait-for', *inputs,
         )  # fmt: skip
-        self.player = start_module(
-            'player', 'lifting_bringup.cli', self._logs, arguments=arguments
-        )
+        self.player = start_module('player', 'lifting_cli.cli', self._logs, arguments=arguments)
 
     @property
     def waiting(self) -> bool:

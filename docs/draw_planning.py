@@ -30,8 +30,8 @@ from lift_predictor.core.sagittal.task import Box, LiftTask2D, build_task
 from lift_predictor.core.spatial.evaluation import lowering
 from lift_predictor.core.spatial.prediction import PredictedLift3D
 from lift_predictor.core.spatial.task import SpatialTask
-from lifting_bringup.bags.reader import BagReader
-from lifting_bringup.recorded_lifts import recorded_lifts
+from lifting_cli.recorded_lifts import recorded_lifts
+from lifting_recordings.reader import BagReader
 from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
 
 BAGS: Final = ('symmetric_7kg', 'symmetric_12kg', 'asymmetric_7kg')

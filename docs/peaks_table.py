@@ -16,11 +16,11 @@ from typing import Any
 import numpy as np
 
 from human_model.constants import GRAVITY
-from lifting_bringup import results_curves as curves
-from lifting_bringup.offline import run_offline
-from lifting_bringup.report.compared import peak
-from lifting_bringup.report.data import SpineCurves
-from lifting_bringup.results_file import Results, read_results, seconds
+from lifting_cli.offline import run_offline
+from lifting_report import results_curves as curves
+from lifting_report.compared import peak
+from lifting_report.report_data import SpineCurves
+from lifting_report.results_file import Results, read_results, seconds
 from muscle_analyzer.core.loads.disc_frame import DiscOption, disc_parameters
 
 DOCS = Path(__file__).parent

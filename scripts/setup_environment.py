@@ -170,7 +170,7 @@ def install_workspace() -> None:
         '#!/bin/sh\n'
         '# Starts the lift command; a ROS 2 installation sourced in this shell stays out of it.\n'
         f"exec '{VENV}/bin/python' -E -s -S '{SCRIPTS}/clean_environment.py' "
-        f'\'{VENV}/bin/python\' -m lifting_bringup.cli "$@"\n'
+        f'\'{VENV}/bin/python\' -m lifting_cli.cli "$@"\n'
     )
     command.chmod(0o755)
 
@@ -184,7 +184,7 @@ def drop_compiled_functions() -> None:
 def compile_functions() -> None:
     """Have every pipeline compile its functions, so that no node does it when it starts."""
     say('compiling the functions of the pipelines (about a minute, once)')
-    run(VENV / 'bin' / 'python', '-m', 'lifting_bringup.warm_up')
+    run(VENV / 'bin' / 'python', '-m', 'lifting_cli.warm_up')
 
 
 def set_up(dev: bool) -> None:

@@ -55,10 +55,10 @@ class Tracked:
 @cache
 def track(bag: Path) -> Tracked:
     """Drive the motion tracker alone, as the graph does, through a recording."""
-    from lifting_bringup.bags.reader import BagReader
-    from lifting_bringup.offline import defaults
-    from lifting_bringup.session import summarise
+    from lifting_cli.offline import defaults
+    from lifting_cli.session import summarise
     from lifting_node.conversions import subject_from_msg
+    from lifting_recordings.reader import BagReader
     from motion_tracker import conversions
     from motion_tracker.core import tracked
     from motion_tracker.core.configuration import tracker_from
@@ -117,7 +117,7 @@ def tracked():
 @pytest.fixture(scope='session')
 def offline(tmp_path_factory):
     """Return a function that runs a recording through all pipelines, once each: its results."""
-    from lifting_bringup.offline import run_offline
+    from lifting_cli.offline import run_offline
 
     @cache
     def run(bag: Path) -> Path:

@@ -10,8 +10,8 @@ from lifting_interfaces.msg import AlarmEvent
 
 from injury_monitor.core.alarm_settings import read_alarm_settings
 from injury_monitor.core.limits import limits_for
-from lifting_bringup.bags.reader import BagReader
-from lifting_bringup.results_file import MEASURED, read_results, seconds
+from lifting_recordings.reader import BagReader
+from lifting_report.results_file import MEASURED, read_results, seconds
 
 LIFTS = ('symmetric_7kg', 'symmetric_12kg', 'symmetric_max')
 #: One live sample [s]: an alarm belongs to the stamp of the sample that fulfils its delay.

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from human_model.report import SolveStatus
-from lifting_bringup.bags.bag_writer import BagWriter
-from lifting_bringup.bags.exceptions import BagError
-from lifting_bringup.bags.reader import BagReader
-from lifting_bringup.cli import main
-from lifting_bringup.graph_errors import GraphError
-from lifting_bringup.offline import run_offline
-from lifting_bringup.results_file import MEASURED, PREDICTED, read_results
+from lifting_cli.cli import main
+from lifting_cli.graph_errors import GraphError
+from lifting_cli.offline import run_offline
+from lifting_recordings.bag_writer import BagWriter
+from lifting_recordings.exceptions import BagError
+from lifting_recordings.reader import BagReader
+from lifting_report.results_file import MEASURED, PREDICTED, read_results
 
 BAG = 'symmetric_7kg'
 #: Stretch of the recording with the lift in it [s], for what needs no more.

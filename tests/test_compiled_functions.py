@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from lifting_bringup import warm_up
+from lifting_cli import warm_up
 
 ROOT = Path(__file__).resolve().parents[1]
 

@@ -5,9 +5,9 @@
 import numpy as np
 import pytest
 
-from lifting_bringup.bags.reader import BagReader
-from lifting_bringup.results_file import MEASURED, PREDICTED, read_results, seconds
-from lifting_bringup.session import RunOptions, run_online
+from lifting_cli.session import RunOptions, run_online
+from lifting_recordings.reader import BagReader
+from lifting_report.results_file import MEASURED, PREDICTED, read_results, seconds
 
 BAG = 'symmetric_12kg'
 #: Agreed: peaks of the two ways.

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from lifting_bringup.results_file import read_results
+from lifting_report.results_file import read_results
 
 DOCS = Path(__file__).resolve().parents[1] / 'docs'
 NUMBER = re.compile(r'(?<![\w.])−?\d+(?:\.\d+)?')

@@ -214,7 +214,7 @@ def make_targets() -> set[str]:
 
 def lift_commands() -> dict[str, set[str]]:
     """Return the options of each subcommand of `lift`."""
-    from lifting_bringup.cli import _parser
+    from lifting_cli.cli import _parser
 
     action = next(
         action for action in _parser()._actions if isinstance(action, argparse._SubParsersAction)
@@ -337,7 +337,7 @@ def test_alarms_table_is_that_of_the_monitor() -> None:
 
 
 def test_subject_file_example_is_accepted(tmp_path: Path) -> None:
-    from lifting_bringup.bags.subject_file import read_subject_file
+    from lifting_recordings.subject_file import read_subject_file
 
     block = re.search(r'^```yaml\n(subject:.*?)^```', RECORDINGS, re.MULTILINE | re.DOTALL)
     assert block is not None

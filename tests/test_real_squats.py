@@ -13,7 +13,7 @@ import pytest
 
 from human_model.frames import matrix_from_quaternion
 from human_model.skeleton_3d import Skeleton3D
-from lifting_bringup.bags.importer import ImportOptions, import_recording
+from lifting_recordings.importer import ImportOptions, import_recording
 from motion_tracker.core.filters import derivatives, zero_phase
 from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
 

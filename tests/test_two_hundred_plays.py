@@ -13,11 +13,11 @@ from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
 from std_srvs.srv import Trigger
 
-from lifting_bringup.bags.reader import BagReader
-from lifting_bringup.graph import Graph
-from lifting_bringup.node_process import discovery, node_processes, start_module
-from lifting_bringup.session import summarise
+from lifting_cli.graph import Graph
+from lifting_cli.node_process import discovery, node_processes, start_module
+from lifting_cli.session import summarise
 from lifting_node import qos
+from lifting_recordings.reader import BagReader
 
 STATION = 'soak'
 BAG = 'symmetric_7kg'
@@ -75,7 +75,7 @@ def soak(bag, rounds, loops, folder, say=print):
         flush = node.create_client(Trigger, 'motion_tracker/flush')
         for play in range(loops, rounds * loops + 1, loops):
             player = start_module(
-                'player', 'lifting_bringup.cli', folder / 'logs',
+                'player', 'lifting_cli.cli', folder / 'logs',
                 arguments=(
                     'play', str(bag), '--rate', str(RATE), '--loop', str(loops),
                     '--station', STATION, '--wait-for', *summary.inputs,

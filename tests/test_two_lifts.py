@@ -7,8 +7,8 @@ import json
 import numpy as np
 import pytest
 
-from lifting_bringup.cli import main
-from lifting_bringup.results_file import read_results
+from lifting_cli.cli import main
+from lifting_report.results_file import read_results
 
 LIFTS = ('symmetric_7kg', 'asymmetric_7kg')
 

@@ -15,10 +15,10 @@ import pytest
 import yaml
 
 from human_model.frames import matrix_from_quaternion
-from lifting_bringup.bags.reader import BagReader
-from lifting_bringup.session import RunOptions, run_online
+from lifting_cli.session import RunOptions, run_online
 from lifting_node.conversions import motion_from_msg
 from lifting_node.stamps import to_seconds
+from lifting_recordings.reader import BagReader
 
 BAG = 'symmetric_7kg'
 STATION = '/station_1/'

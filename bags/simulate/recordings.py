@@ -25,11 +25,11 @@ from bags.simulate.tasks import Stage, Task
 
 from human_model.subject import Calibration, Subject
 from human_model.typing import Array
-from lifting_bringup.bags.bag_writer import START_TIME_NS, BagWriter, in_order
-from lifting_bringup.bags.importer import marker_stream, plate_stream, pose_stream
-from lifting_bringup.bags.messages import MarkerCalibration, subject_message, task_message
-from lifting_bringup.bags.recording import Recording
-from lifting_bringup.bags.subject_file import SubjectEntry, TaskEntry
+from lifting_recordings.bag_writer import START_TIME_NS, BagWriter, in_order
+from lifting_recordings.importer import marker_stream, plate_stream, pose_stream
+from lifting_recordings.messages import MarkerCalibration, subject_message, task_message
+from lifting_recordings.recording import Recording
+from lifting_recordings.subject_file import SubjectEntry, TaskEntry
 from motion_tracker.core.calibration import calibrate
 from motion_tracker.core.marker_set import load_marker_set
 

@@ -4,15 +4,14 @@
 
 from glob import glob
 
-from setuptools import find_packages, setup
+from setuptools import setup
 
 package_name = 'lifting_bringup'
 
 setup(
     name=package_name,
     version='0.1.0',
-    packages=find_packages(exclude=['test']),
-    package_data={'': ['py.typed', 'data/**/*']},
+    packages=[],
     data_files=[
         ('share/ament_index/resource_index/packages', ['resource/' + package_name]),
         ('share/' + package_name, ['package.xml']),
@@ -22,10 +21,6 @@ setup(
     zip_safe=False,
     maintainer='The lift monitor authors',
     maintainer_email='maintainers@lift-monitor.example',
-    description=(
-        'Launch files, configuration and the lift command: import, play and record bags, '
-        'run the graph, write the report.'
-    ),
+    description='Launch files and configuration of the graph of one station.',
     license='Apache-2.0',
-    entry_points={'console_scripts': ['lift = lifting_bringup.cli:main']},
 )

@@ -10,7 +10,7 @@ import pytest
 
 rclpy = pytest.importorskip('rclpy', reason='rclpy is not installed')
 pytest.importorskip('lifting_interfaces.msg', reason='the interface package is not built')
-reader = pytest.importorskip('lifting_bringup.bags.reader', reason='rosbags is not installed')
+reader = pytest.importorskip('lifting_recordings.reader', reason='rosbags is not installed')
 
 from geometry_msgs.msg import PointStamped, PoseStamped, WrenchStamped  # noqa: E402
 from lifecycle_msgs.msg import Transition  # noqa: E402

@@ -13,7 +13,7 @@ from motion_tracker.core.marker_set import load_marker_set
 from motion_tracker.core.tracked import DetectedEvent, MeasuredLift, TrackedFrame
 from motion_tracker.core.tracker import MotionTracker
 
-reader = pytest.importorskip('lifting_bringup.bags.reader', reason='rosbags is not installed')
+reader = pytest.importorskip('lifting_recordings.reader', reason='rosbags is not installed')
 
 TASKS = ('symmetric_7kg', 'symmetric_12kg', 'symmetric_max', 'asymmetric_7kg')
 SAGITTAL = (

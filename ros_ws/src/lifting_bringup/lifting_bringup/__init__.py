@@ -1,5 +1,0 @@
-# SPDX-FileCopyrightText: 2026 The lift monitor authors
-# SPDX-License-Identifier: Apache-2.0
-"""The lift command: import, play and record bags, run the graph, write the report."""
-
-__version__ = '0.1.0'

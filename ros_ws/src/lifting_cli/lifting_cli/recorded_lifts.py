@@ -1,0 +1,94 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""The measured lifts of a recording: the motion tracker alone, without graph or predictions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from human_model.errors import HumanModelError
+from human_model.subject import Subject
+from lifting_cli.graph_errors import SessionError
+from lifting_cli.session import summarise
+from lifting_node.conversions import subject_from_msg
+from lifting_node.parameters import load_table
+from lifting_recordings.reader import BagReader
+from motion_tracker import conversions
+from motion_tracker.core.configuration import tracker_from
+from motion_tracker.core.errors import MotionTrackerError
+from motion_tracker.core.tracked import MeasuredLift, Output
+from motion_tracker.core.tracker import MotionTracker
+
+
+@dataclass(frozen=True)
+class RecordedLifts:
+    """What the tracker found in a recording.
+
+    Attributes
+    ----------
+    start : float
+        Stamp at which the recording starts [s].
+    subject : Subject
+        As the tracker scaled it.
+    lifts : tuple of MeasuredLift
+        In the order in which they ended.
+    """
+
+    start: float
+    subject: Subject
+    lifts: tuple[MeasuredLift, ...]
+
+    def lift(self, number: int) -> MeasuredLift:
+        """Return a lift, counted from 1; raise SessionError if there is no such."""
+        if not 1 <= number <= len(self.lifts):
+            raise SessionError(f'lift {number} is not there: the recording has {len(self.lifts)}')
+        return self.lifts[number - 1]
+
+
+def recorded_lifts(bag: Path) -> RecordedLifts:
+    """Track a recording.
+
+    Raises
+    ------
+    BagError
+        If the recording cannot be read.
+    SessionError
+        If subject or task are missing, or the tracker refuses what it holds.
+    """
+    summary = summarise(bag)
+    with BagReader(bag) as reader:
+        latched = {n.strip('/'): m for n, _, m in reader.messages(['/subject', '/task'])}
+        if missing := {'subject', 'task'} - latched.keys():
+            raise SessionError(f'{bag}: nothing in topic {sorted(missing)[0]!r}')
+        defaults = {p.name: p.default for p in load_table('motion_tracker')}
+        try:
+            tracker = tracker_from(
+                defaults,
+                subject_from_msg(latched['subject']),
+                latched['subject'].marker_set,
+                *conversions.task_from_msg(latched['task']),
+            )
+            names = [name for name in reader.topics if name.strip('/') in summary.inputs]
+            outputs = [
+                output
+                for topic, _, message in reader.messages(names)
+                for output in _push(tracker, topic.strip('/'), message)
+            ]
+            outputs += tracker.flush()
+        except (MotionTrackerError, HumanModelError) as error:
+            raise SessionError(f'{bag}: {error}') from error
+    found = tuple(output for output in outputs if isinstance(output, MeasuredLift))
+    return RecordedLifts(summary.start, tracker.subject, found)
+
+
+def _push(tracker: MotionTracker, topic: str, message: Any) -> list[Output]:
+    match topic.split('/'):
+        case ['markers']:
+            return tracker.push_markers(*conversions.markers_from_msg(message))
+        case ['box', 'pose']:
+            return tracker.push_box(*conversions.box_from_msg(message))
+        case [_, side, 'wrench']:
+            return tracker.push_wrench(side, *conversions.wrench_from_msg(message))
+    return []

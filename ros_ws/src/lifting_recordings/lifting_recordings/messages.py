@@ -1,0 +1,111 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Subject and Task messages from the entries of a subject file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from human_model.typing import Array
+from lifting_recordings.bag_writer import BagWriter
+from lifting_recordings.subject_file import SubjectEntry, TaskEntry
+
+
+@dataclass(frozen=True)
+class MarkerCalibration:
+    """Where the markers sit on this person's segments.
+
+    Attributes
+    ----------
+    marker_set : str
+        Name of the marker set.
+    marker_names, segments : tuple of str
+        One per marker.
+    offsets : ndarray, shape (n_markers, 3)
+        [m] in the segment's anatomical frame.
+    rms : float
+        Root mean square distance of the markers in the static trial [m].
+    segment_lengths : dict
+        Segment lengths the static trial suggests [m]; may be empty.
+    """
+
+    marker_set: str
+    marker_names: tuple[str, ...]
+    segments: tuple[str, ...]
+    offsets: Array
+    rms: float
+    segment_lengths: Mapping[str, float] = field(default_factory=dict)
+
+
+def subject_message(
+    writer: BagWriter,
+    stamp_ns: int,
+    entry: SubjectEntry,
+    marker_set: str,
+    calibration: MarkerCalibration | None,
+) -> Any:
+    """Return a lifting_interfaces/Subject.
+
+    Parameters
+    ----------
+    writer : BagWriter
+        Makes the messages.
+    stamp_ns : int
+        [ns].
+    entry : SubjectEntry
+        Who.
+    marker_set : str
+        Name of the marker set of the recording; '' if none is named.
+    calibration : MarkerCalibration or None
+        From a static trial.
+    """
+    found = calibration.segment_lengths if calibration else {}
+    # What a person measured takes precedence over what the static trial suggests.
+    merged = {**found, **entry.segment_lengths}
+    return writer.make(
+        'lifting_interfaces/msg/Subject',
+        header=writer.header(stamp_ns, ''),
+        pseudonym=entry.pseudonym,
+        sex=entry.sex,
+        mass=entry.mass,
+        stature=entry.stature,
+        age=entry.age,
+        strength_z=entry.strength_z,
+        segment_length_names=list(merged),
+        segment_lengths=np.array(list(merged.values()), dtype=np.float64),
+        marker_set=calibration.marker_set if calibration else marker_set,
+        marker_names=list(calibration.marker_names) if calibration else [],
+        marker_segments=list(calibration.segments) if calibration else [],
+        marker_offsets=(
+            np.asarray(calibration.offsets, dtype=np.float64).ravel()
+            if calibration
+            else np.zeros(0)
+        ),
+        calibration_rms=calibration.rms if calibration else float('nan'),
+        source=entry.source,
+    )
+
+
+def task_message(writer: BagWriter, stamp_ns: int, entry: TaskEntry, source: str) -> Any:
+    """Return a lifting_interfaces/Task; `source` says where from and what was detected."""
+    return writer.make(
+        'lifting_interfaces/msg/Task',
+        header=writer.header(stamp_ns),
+        task_id=entry.task_id,
+        description=entry.description,
+        box_mass=entry.box_mass,
+        box_size=np.array(entry.box_size, dtype=np.float64),
+        box_start=writer.point(np.array(entry.box_start)),
+        box_end=writer.point(np.array(entry.box_end)),
+        coupling=entry.coupling,
+        lifts_per_minute=entry.lifts_per_minute,
+        lifts_per_day=entry.lifts_per_day,
+        duration_hours=entry.duration_hours,
+        control_at_destination=entry.control_at_destination,
+        simulated=entry.simulated,
+        source=source,
+    )

@@ -1,0 +1,199 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Where the force plates are relative to the cameras, judged by a person who stands still.
+
+While a person stands still the net moment at L5-S1 from above and from below differs by what the
+plates are off. Plates that are 10 mm off change joint torques by some 14 % (McCaw and DeVita 1995,
+J Biomech 28:985). If a subject file asks for it, both plates are moved so that the difference
+vanishes in quiet standing: by a horizontal shift, constant over the recording.
+
+Residual reduction (Delp et al. 2007) moves the trunk's centre of mass instead. The two look the
+same in standing; in a squat an offset of the plates stays what it was in the laboratory, and one
+of the trunk turns with the trunk. See the documentation of the validation for a recording in
+which it is the first.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from human_model.errors import HumanModelError
+from human_model.skeleton_3d import Skeleton3D
+from human_model.subject import Calibration, Subject
+from human_model.typing import Array
+from lifting_recordings.exceptions import ConventionError
+from lifting_recordings.messages import MarkerCalibration
+from lifting_recordings.recording import SIDES, Plate, Recording, centre_of_pressure
+from lifting_recordings.static_trial import person
+from lifting_recordings.subject_file import QUIET_STANDING, SubjectFile
+from motion_tracker.core.errors import MotionTrackerError
+from motion_tracker.core.filters import zero_phase
+from motion_tracker.core.marker_set import load_marker_set
+from motion_tracker.core.quiet_standing import (
+    QuietStanding,
+    coordinates_of,
+    find_quiet_standing,
+    missing_moment,
+)
+from muscle_analyzer.core.exceptions import MuscleAnalyzerError
+from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
+
+#: Offset beyond which plates are not moved [m]: the largest errors of centres of pressure
+#: reported for force plates, Schmiedmayer and Kastner 2000 (J Biomech Eng 122:523).
+LARGEST = 0.03
+#: Cut-off of the plates [Hz], as in the thesis (section 3.4).
+_CUTOFF = 25.0
+
+
+@dataclass(frozen=True, eq=False)
+class PlateOffset:
+    """What the plates' places lack.
+
+    Attributes
+    ----------
+    offset : ndarray, shape (2,)
+        To add to the places of both plates, world x and y [m].
+    spread : ndarray, shape (2,)
+        Standard deviation over the frames [m].
+    """
+
+    offset: Array
+    spread: Array
+
+
+def offset_of(missing: npt.ArrayLike, force: npt.ArrayLike) -> PlateOffset:
+    """Return the shift of the plates that gives what is missing, frame by frame.
+
+    Parameters
+    ----------
+    missing : array-like, shape (n, 3)
+        Moment that the ground does not give [N m].
+    force : array-like, shape (n, 3)
+        Of the ground on the person [N].
+    """
+    moments, forces = (np.asarray(a, dtype=np.float64) for a in (missing, force))
+    # (x, y, 0) x force = missing; of its horizontal part the vertical force makes all.
+    rows = np.stack((-moments[:, 1], moments[:, 0]), axis=1) / forces[:, 2:]
+    return PlateOffset(rows.mean(axis=0), rows.std(axis=0))
+
+
+def moved(plate: Plate, offset: npt.ArrayLike) -> Plate:
+    """Return a plate that is moved by `offset` (2,) [m] on the floor."""
+    shift = np.array([*np.asarray(offset, dtype=np.float64), 0.0])
+    return replace(plate, moment=plate.moment + np.cross(shift, plate.force))
+
+
+def register_plates(
+    recording: Recording, entry: SubjectFile, calibration: MarkerCalibration | None
+) -> Recording:
+    """Return the recording with its plates where quiet standing says that they are.
+
+    Raises
+    ------
+    ConventionError
+        Plates or a marker set are missing, there is too little quiet standing, or the offset is
+        larger than one of plates is.
+    """
+    where = f'{entry.path}: recording.plate_registration: {QUIET_STANDING}'
+    if missing := [side for side in SIDES if side not in recording.plates]:
+        raise ConventionError(f'{where}: no plate is under the {missing[0]} foot')
+    if not entry.recording.marker_set:
+        raise ConventionError(f'{where}: recording.marker_set is needed')
+    try:
+        by_model, by_segments, seconds = _offsets(recording, entry, calibration)
+    except (MotionTrackerError, HumanModelError, MuscleAnalyzerError) as error:
+        raise ConventionError(f'{where}: {error}') from error
+    size = float(np.linalg.norm(by_model.offset))
+    if not size <= LARGEST:
+        raise ConventionError(
+            f'{where}: the plates would have to be moved by {1e3 * size:.0f} mm, more than '
+            f'{1e3 * LARGEST:.0f} mm: look for the error in plates, mass or markers'
+        )
+    statement = (
+        f'Both plates were moved by {_said(by_model.offset)}, so that the net moment at L5-S1 is '
+        f'the same from above and below in {seconds:.1f} s of quiet standing (standard deviation '
+        f'{1e3 * by_model.spread.max():.0f} mm); the segment masses of the skeleton alone would '
+        f'move them by {_said(by_segments.offset)}.'
+    )
+    return replace(
+        recording,
+        plates={side: moved(plate, by_model.offset) for side, plate in recording.plates.items()},
+        statements=(*recording.statements, statement),
+    )
+
+
+def _said(offset: Array) -> str:
+    x, y = (round(1e3 * float(shift)) for shift in offset)
+    return f'{x:+d} mm forward and {y:+d} mm to the left'
+
+
+def _offsets(
+    recording: Recording, entry: SubjectFile, calibration: MarkerCalibration | None
+) -> tuple[PlateOffset, PlateOffset, float]:
+    """Return the offsets by the musculoskeletal model and by the skeleton, and the time seen."""
+    subject = person(entry.subject)
+    if calibration is not None:
+        subject = replace(
+            subject,
+            calibration=Calibration(
+                calibration.marker_names,
+                calibration.segments,
+                calibration.offsets,
+                dict(calibration.segment_lengths),
+                calibration.rms,
+            ),
+        )
+    rate = 1.0 / float(np.median(np.diff(recording.time)))
+    marker_set = load_marker_set(entry.recording.marker_set)
+    skeleton, q = coordinates_of(subject, marker_set, recording.names, recording.markers)
+    wrenches = [_wrench(recording.plates[side], recording.time) for side in SIDES]
+    force = np.stack([w[:, :3] for w in wrenches], axis=1)
+    moment = np.stack([w[:, 3:] for w in wrenches], axis=1)
+    standing = find_quiet_standing(skeleton, rate, q, force.sum(axis=1))
+    force, moment = force[standing.frames], moment[standing.frames]
+    by_segments = missing_moment(skeleton, standing, force.sum(axis=1), moment.sum(axis=1))
+    by_model = _missing_by_model(subject, skeleton, standing, recording.time, force, moment)
+    return (
+        offset_of(by_model, force.sum(axis=1)),
+        offset_of(by_segments, force.sum(axis=1)),
+        len(standing.frames) / rate,
+    )
+
+
+def _missing_by_model(
+    subject: Subject,
+    skeleton: Skeleton3D,
+    standing: QuietStanding,
+    time: Array,
+    force: Array,
+    moment: Array,
+) -> Array:
+    """Return the net L5-S1 moment (n, 3) from above less that from below [N m]."""
+    places = np.stack([centre_of_pressure(force[:, k], moment[:, k]) for k in (0, 1)], axis=1)
+    motion = skeleton.body_motion(
+        time[standing.frames],
+        standing.q,
+        standing.qd,
+        standing.qdd,
+        ground_force=force,
+        centre_of_pressure=places,
+        free_moment=moment - np.cross(places, force),
+    )
+    analyzer = MuscleAnalyzer()
+    analyzer.configure(subject)
+    analysis = analyzer.analyze(motion, source='measured')
+    missing: Array = analysis.net_moment_top_down - analysis.net_moment_bottom_up
+    if not np.isfinite(missing).all():
+        bad = next(report for report in analysis.reports if report.status != 0)
+        raise MuscleAnalyzerError(f'quiet standing: {bad.message}')
+    return missing
+
+
+def _wrench(plate: Plate, time: Array) -> Array:
+    """Return force and moment (n, 6) of a plate at other times, filtered without delay."""
+    rate = 1.0 / float(np.median(np.diff(plate.time)))
+    values = zero_phase(np.concatenate((plate.force, plate.moment), axis=1), rate, _CUTOFF)
+    return np.stack([np.interp(time, plate.time, column) for column in values.T], axis=1)

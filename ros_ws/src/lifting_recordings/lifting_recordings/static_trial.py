@@ -1,0 +1,87 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Marker calibration from a static trial, by the tracker's own calibration."""
+
+from __future__ import annotations
+
+from human_model.errors import HumanModelError
+from human_model.subject import Subject
+from lifting_recordings.exceptions import StaticTrialError, SubjectFileError
+from lifting_recordings.messages import MarkerCalibration
+from lifting_recordings.recording import Recording
+from lifting_recordings.subject_file import SubjectEntry, SubjectFile
+from motion_tracker.core.calibration import calibrate
+from motion_tracker.core.errors import MotionTrackerError
+from motion_tracker.core.marker_set import load_marker_set
+
+_SEX = {1: 'male', 2: 'female'}
+
+
+def person(who: SubjectEntry) -> Subject:
+    """Return the person of a subject file as the models know persons.
+
+    Raises
+    ------
+    HumanModelError
+        A measure is out of the models' range.
+    """
+    return Subject(
+        who.pseudonym,
+        _SEX[who.sex],
+        who.mass,
+        who.stature,
+        who.age,
+        who.strength_z,
+        dict(who.segment_lengths),
+    )
+
+
+def calibrate_markers(
+    trial: Recording, entry: SubjectFile
+) -> tuple[MarkerCalibration, tuple[str, ...]]:
+    """Return the calibration and the statements for the report.
+
+    Parameters
+    ----------
+    trial : Recording
+        Quiet standing, in the graph's conventions.
+    entry : SubjectFile
+        Who, and which marker set.
+
+    Raises
+    ------
+    SubjectFileError
+        No marker set is named.
+    StaticTrialError
+        The trial cannot be used; says why.
+    """
+    name = entry.recording.marker_set
+    if not name:
+        raise SubjectFileError(
+            f'{entry.path}: recording.marker_set: is missing, but a static trial is given'
+        )
+    try:
+        marker_set = load_marker_set(name)
+        subject = person(entry.subject)
+        known = [i for i, marker in enumerate(trial.names) if marker in marker_set.names]
+        found = calibrate(
+            marker_set, [trial.names[i] for i in known], trial.markers[:, known], subject
+        )
+    except (MotionTrackerError, HumanModelError) as error:
+        raise StaticTrialError(f'{trial.path}: {error}') from error
+    left_out = sorted(set(trial.names) - {trial.names[i] for i in known})
+    said = [f'Static trial {trial.path.name}: {text}' for text in found.statements]
+    if left_out:
+        said.append(f'Static trial {trial.path.name}: not in {name}: {", ".join(left_out)}.')
+    result = found.calibration
+    return (
+        MarkerCalibration(
+            marker_set=name,
+            marker_names=result.marker_names,
+            segments=result.segments,
+            offsets=result.local_offsets,
+            rms=result.residual_rms,
+            segment_lengths=result.lengths,
+        ),
+        tuple(said),
+    )

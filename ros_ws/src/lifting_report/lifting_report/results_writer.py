@@ -1,0 +1,100 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Write results to an MCAP file as the recorder of a running graph does."""
+
+from __future__ import annotations
+
+import array
+import shutil
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+from rosbags.interfaces import Connection
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
+from rosbags.typesys.store import Typestore
+
+from lifting_recordings.bag_writer import BAG_VERSION, quality
+from lifting_recordings.message_types import typestore
+
+NANOSECONDS = 1_000_000_000
+
+
+class ResultsWriter:
+    """Context manager over a new results file; one of an earlier run is replaced.
+
+    Parameters
+    ----------
+    path : Path
+        The .mcap file.
+    station : str
+        Namespace of the topics.
+    """
+
+    def __init__(self, path: Path, station: str) -> None:
+        self._path = path
+        self._station = station
+        self._folder = path.with_suffix('.writing')
+        shutil.rmtree(self._folder, ignore_errors=True)
+        self._writer = Writer(self._folder, version=BAG_VERSION, storage_plugin=StoragePlugin.MCAP)
+        self._writer.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
+        self._store = typestore()
+        self._connections: dict[str, Connection] = {}
+
+    def __enter__(self) -> Self:
+        self._writer.open()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._writer.close()
+        if kind is None:
+            (file,) = self._folder.glob('*.mcap')
+            file.replace(self._path)
+        shutil.rmtree(self._folder)
+
+    def write(self, topic: str, message: Any) -> None:
+        """Write one message of the interfaces under the stamp of its header.
+
+        Not by rclpy's serialize_message: behind a message that ends with an empty sequence it
+        leaves undefined bytes, which readers refuse.
+        """
+        decoded = _decoded(message, self._store)
+        self.write_decoded(topic, decoded, self._store)
+
+    def write_decoded(self, topic: str, message: Any, store: Typestore) -> None:
+        """Write one message decoded from a recording."""
+        name = message.__msgtype__
+        self._write(topic, name, message.header.stamp, store.serialize_cdr(message, name))
+
+    def _write(self, topic: str, message_type: str, stamp: Any, data: Any) -> None:
+        if topic not in self._connections:
+            self._connections[topic] = self._writer.add_connection(
+                f'/{self._station}/{topic}',
+                message_type,
+                typestore=self._store,
+                offered_qos_profiles=[quality(transient_local=topic in ('subject', 'task'))],
+            )
+        time = stamp.sec * NANOSECONDS + stamp.nanosec
+        self._writer.write(self._connections[topic], time, data)
+
+
+def _decoded(value: Any, store: Typestore) -> Any:
+    """Return a value of an rclpy message, or the message, as the store has it."""
+    if hasattr(value, 'get_fields_and_field_types'):
+        package = type(value).__module__.split('.', 1)[0]
+        fields = {
+            name: _decoded(getattr(value, name), store)
+            for name in value.get_fields_and_field_types()
+        }
+        return store.types[f'{package}/msg/{type(value).__name__}'](**fields)
+    if isinstance(value, array.array):
+        return np.asarray(value)
+    if isinstance(value, list):
+        return [_decoded(entry, store) for entry in value]
+    return value
