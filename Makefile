@@ -43,7 +43,8 @@ lint: setup-dev ## ruff over everything: rules and format
 	@$(TOOL) ruff format --check --quiet .
 
 typecheck: setup-dev ## mypy, strict, over the pure cores
-	@$(TOOL) mypy $(wildcard ros_ws/src/human_model/human_model ros_ws/src/*/*/core)
+	@$(TOOL) mypy $(wildcard ros_ws/src/human_model/human_model \
+		ros_ws/src/lifting_messages/lifting_messages ros_ws/src/*/*/core)
 
 bench: reference-models ## speed and accuracy figures
 	@test -f benchmarks/run.py || { echo 'there is no benchmarks/run.py' >&2; exit 1; }

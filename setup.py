@@ -12,7 +12,7 @@ from setuptools import find_packages, setup
 
 SOURCES = Path('ros_ws', 'src')
 #: Package of the wheel that holds the .msg files, which bags are written with.
-DEFINITIONS = 'lifting_recordings.interfaces'
+DEFINITIONS = 'lifting_messages.msg'
 
 folders = {path.parent.name: str(path.parent) for path in SOURCES.glob('*/*/__init__.py')}
 packages = [

@@ -12,15 +12,17 @@ import pytest
 SOURCES = Path(__file__).resolve().parents[1] / 'ros_ws' / 'src'
 MAY_IMPORT = {
     'human_model': set(),
-    'lifting_node': {'human_model'},
-    'motion_tracker': {'human_model', 'lifting_node'},
-    'lift_predictor': {'human_model', 'lifting_node'},
-    'muscle_analyzer': {'human_model', 'lifting_node'},
-    'injury_monitor': {'human_model', 'lifting_node'},
-    'lifting_visualization': {'human_model', 'lifting_node'},
-    'lifting_recordings': {'human_model', 'motion_tracker', 'muscle_analyzer'},
+    'lifting_messages': {'human_model'},
+    'lifting_node': {'human_model', 'lifting_messages'},
+    'motion_tracker': {'human_model', 'lifting_messages', 'lifting_node'},
+    'lift_predictor': {'human_model', 'lifting_messages', 'lifting_node'},
+    'muscle_analyzer': {'human_model', 'lifting_messages', 'lifting_node'},
+    'injury_monitor': {'human_model', 'lifting_messages', 'lifting_node'},
+    'lifting_visualization': {'human_model', 'lifting_messages', 'lifting_node'},
+    'lifting_recordings': {'human_model', 'lifting_messages', 'motion_tracker', 'muscle_analyzer'},
     'lifting_report': {
         'human_model',
+        'lifting_messages',
         'lifting_node',
         'lifting_recordings',
         'lift_predictor',
@@ -56,6 +58,7 @@ def test_a_room_imports_only_what_it_may(package: str) -> None:
     'folder',
     [
         'human_model/human_model',
+        'lifting_messages/lifting_messages',
         'lifting_recordings/lifting_recordings',
         *(f'{p}/{p}/core' for p in MAY_IMPORT if (SOURCES / p / p / 'core').is_dir()),
     ],

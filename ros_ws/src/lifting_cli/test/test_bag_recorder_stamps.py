@@ -8,7 +8,7 @@ from rosbags.typesys import Stores, get_typestore
 pytest.importorskip('rclpy', reason='recording needs rclpy')
 
 from lifting_cli.transport.recorder import _stamp, _stamp_place
-from lifting_recordings.message_types import typestore
+from lifting_messages import typestore
 
 STORE = get_typestore(Stores.ROS2_JAZZY)
 TYPES = STORE.types

@@ -29,8 +29,8 @@ from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, W
 from rosbags.rosbag2.errors import WriterError
 
 from human_model.typing import Array
+from lifting_messages import typestore
 from lifting_recordings.exceptions import BagError
-from lifting_recordings.message_types import typestore
 
 WORLD = 'world'
 # A recording carries no date: its stamps count from here [ns], so that no stamp is zero, which

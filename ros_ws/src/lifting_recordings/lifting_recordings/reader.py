@@ -22,9 +22,9 @@ from rosbags.rosbag2.errors import ReaderError
 from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
 
+from lifting_messages import typestore
 from lifting_recordings.exceptions import MessageTypeError, UnreadableBagError
 from lifting_recordings.mcap_recovery import Recovered, has_footer, recover
-from lifting_recordings.message_types import typestore
 
 _STORAGE = {'.mcap': 'mcap', '.db3': 'sqlite3'}
 

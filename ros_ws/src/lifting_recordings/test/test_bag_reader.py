@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from rosbags.rosbag2 import StoragePlugin, Writer
 
+from lifting_messages import typestore
 from lifting_recordings.bag_writer import START_TIME_NS, BagWriter, in_order, quality
 from lifting_recordings.exceptions import UnreadableBagError
 from lifting_recordings.importer import plate_stream
-from lifting_recordings.message_types import typestore
 from lifting_recordings.reader import BagReader
 from lifting_recordings.recording import Plate
 

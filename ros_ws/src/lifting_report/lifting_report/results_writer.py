@@ -15,8 +15,8 @@ from rosbags.interfaces import Connection
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 from rosbags.typesys.store import Typestore
 
+from lifting_messages import typestore
 from lifting_recordings.bag_writer import BAG_VERSION, quality
-from lifting_recordings.message_types import typestore
 
 NANOSECONDS = 1_000_000_000
 

@@ -20,9 +20,9 @@ from rosbags.typesys.store import Typestore
 
 from lifting_cli.transport.qos import message_class, recorded_quality, subscription_profile
 from lifting_cli.transport.ros_context import own_node
+from lifting_messages import typestore
 from lifting_recordings.bag_writer import BAG_VERSION, quality
 from lifting_recordings.exceptions import BagError
-from lifting_recordings.message_types import typestore
 
 _DISCOVERY_SECONDS = 0.1
 _SPIN_SECONDS = 0.05

@@ -1,0 +1,37 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Exceptions of this package."""
+
+from __future__ import annotations
+
+
+class LiftingMessagesError(ValueError):
+    """Base of every error this package raises on bad input."""
+
+
+class MessageTypeError(LiftingMessagesError):
+    """There is no definition of a message type."""
+
+
+class ParameterError(LiftingMessagesError):
+    """A parameter value was refused; the text names node, parameter, value and range."""
+
+
+class MessageError(LiftingMessagesError):
+    """Bytes that are no message of the type that they should have.
+
+    Attributes
+    ----------
+    name : str
+        Type of the message.
+    size : int
+        Number of bytes.
+    problem : str
+        What is wrong.
+    """
+
+    def __init__(self, name: str, size: int, problem: str) -> None:
+        super().__init__(f'{name}: {size} bytes cannot be decoded: {problem}')
+        self.name = name
+        self.size = size
+        self.problem = problem

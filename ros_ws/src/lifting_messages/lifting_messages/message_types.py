@@ -1,0 +1,148 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Message types without ROS: rosbags' dataclasses of the Jazzy types and of lifting_interfaces.
+
+In Python a message of the graph is such a dataclass, with NumPy arrays; rosbags' generated code
+is the one codec between it and the bytes of a topic or a recording.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
+from rosbags.interfaces import Nodetype
+from rosbags.serde import SerdeError
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+from rosbags.typesys.store import Typestore
+
+from lifting_messages.exceptions import MessageError, MessageTypeError
+
+#: A message of any type; rosbags makes its class when the program runs.
+Message: TypeAlias = Any
+
+_PACKAGE = 'lifting_interfaces'
+
+
+def interface_folder() -> Path:
+    """Return the folder of lifting_interfaces' .msg files.
+
+    They lie in this package where it was installed as a wheel, beside it in the source tree, or
+    in the share folder of a built lifting_interfaces.
+
+    Raises
+    ------
+    MessageTypeError
+        Found in none of these places.
+    """
+    here = Path(__file__).resolve().parent
+    places = [here / 'msg', here.parents[1] / _PACKAGE / 'msg']
+    for place in places:
+        if place.is_dir():
+            return place
+    try:
+        from ament_index_python.packages import PackageNotFoundError, get_package_share_directory
+    except ModuleNotFoundError as error:
+        raise MessageTypeError(f'{_PACKAGE}: not at {places[-1]}, no ament index') from error
+    try:
+        return Path(get_package_share_directory(_PACKAGE)) / 'msg'
+    except PackageNotFoundError as error:
+        raise MessageTypeError(f'{_PACKAGE} is not installed and not at {places[-1]}') from error
+
+
+@cache
+def typestore() -> Typestore:
+    """Return a store with the Jazzy types and those of lifting_interfaces."""
+    store = get_typestore(Stores.ROS2_JAZZY)
+    types = {}
+    folder = interface_folder()
+    files = sorted(folder.glob('*.msg'))
+    if not files:
+        raise MessageTypeError(f'{folder} holds no .msg files')
+    for file in files:
+        text = file.read_text(encoding='utf-8')
+        types.update(get_types_from_msg(text, f'{_PACKAGE}/msg/{file.stem}'))
+    store.register(types)
+    return store
+
+
+def full_name(name: str) -> str:
+    """Return 'package/msg/Name' of 'package/Name', or of a name of lifting_interfaces."""
+    if '/' not in name:
+        return f'{_PACKAGE}/msg/{name}'
+    return name if '/msg/' in name else name.replace('/', '/msg/')
+
+
+def message_type(name: str) -> Any:
+    """Return the class of a message; its constants are attributes.
+
+    Parameters
+    ----------
+    name : str
+        'package/msg/Name', 'package/Name', or 'Name' of lifting_interfaces.
+
+    Raises
+    ------
+    MessageTypeError
+        If there is no such type.
+    """
+    kind = typestore().types.get(full_name(name))
+    if kind is None:
+        raise MessageTypeError(f'there is no message type {full_name(name)}')
+    return kind
+
+
+def make(name: str, **fields: Any) -> Message:
+    """Return a message of a type (`message_type`); fields that are not given are zero or empty."""
+    kind = message_type(name)
+    return kind(**{**_empty(full_name(name)), **fields})
+
+
+def _empty(name: str) -> dict[str, Any]:
+    return {field: _zero(*content) for field, content in typestore().fielddefs[name][1]}
+
+
+def _zero(node: Nodetype, content: Any) -> Any:
+    if node == Nodetype.BASE:
+        kind = content[0]
+        return '' if kind == 'string' else kind == 'never' if kind == 'bool' else _number(kind)
+    if node == Nodetype.NAME:
+        return make(content)
+    (inner, element), length = content
+    size = length if node == Nodetype.ARRAY else 0
+    if inner == Nodetype.BASE and element[0] != 'string':
+        return np.zeros(size, np.dtype(element[0]))
+    return [_zero(inner, element) for _ in range(size)]
+
+
+def _number(kind: str) -> float | int:
+    return 0.0 if kind.startswith('float') else 0
+
+
+def encode(message: Message) -> bytes:
+    """Return a message serialised (CDR, little-endian), as DDS and recordings have it."""
+    return bytes(typestore().serialize_cdr(message, message.__msgtype__))
+
+
+def decode(data: bytes, name: str) -> Message:
+    """Return the message of serialised data.
+
+    Parameters
+    ----------
+    data : bytes
+        Its arrays of numbers stay in here: they are read-only.
+    name : str
+        Type, as `message_type` takes it.
+
+    Raises
+    ------
+    MessageError
+        If the data are no message of this type.
+    """
+    name = full_name(name)
+    try:
+        return typestore().deserialize_cdr(data, name)
+    except (SerdeError, IndexError) as error:
+        raise MessageError(name, len(data), str(error)) from error
