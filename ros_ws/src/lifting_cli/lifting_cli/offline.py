@@ -37,7 +37,7 @@ from lifting_report.results_writer import ResultsWriter
 from motion_tracker import conversions as tracker_messages
 from motion_tracker.core import tracked
 from motion_tracker.core.configuration import tracker_from
-from motion_tracker.core.errors import MotionTrackerError
+from motion_tracker.core.exceptions import MotionTrackerError
 from motion_tracker.core.tracker import MotionTracker
 from muscle_analyzer import conversions as muscle_messages
 from muscle_analyzer.core.exceptions import MuscleAnalyzerError

@@ -17,7 +17,7 @@ from lifting_node.parameters import load_table
 from lifting_recordings.reader import BagReader
 from motion_tracker import conversions
 from motion_tracker.core.configuration import tracker_from
-from motion_tracker.core.errors import MotionTrackerError
+from motion_tracker.core.exceptions import MotionTrackerError
 from motion_tracker.core.tracked import MeasuredLift, Output
 from motion_tracker.core.tracker import MotionTracker
 

@@ -29,7 +29,7 @@ from lifting_recordings.messages import MarkerCalibration
 from lifting_recordings.recording import SIDES, Plate, Recording, centre_of_pressure
 from lifting_recordings.static_trial import person
 from lifting_recordings.subject_file import QUIET_STANDING, SubjectFile
-from motion_tracker.core.errors import MotionTrackerError
+from motion_tracker.core.exceptions import MotionTrackerError
 from motion_tracker.core.filters import zero_phase
 from motion_tracker.core.marker_set import load_marker_set
 from motion_tracker.core.quiet_standing import (

@@ -11,7 +11,7 @@ from lifting_recordings.messages import MarkerCalibration
 from lifting_recordings.recording import Recording
 from lifting_recordings.subject_file import SubjectEntry, SubjectFile
 from motion_tracker.core.calibration import calibrate
-from motion_tracker.core.errors import MotionTrackerError
+from motion_tracker.core.exceptions import MotionTrackerError
 from motion_tracker.core.marker_set import load_marker_set
 
 _SEX = {1: 'male', 2: 'female'}

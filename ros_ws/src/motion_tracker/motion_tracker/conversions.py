@@ -17,7 +17,7 @@ from human_model.subject import Subject
 from human_model.typing import Array
 from lifting_node.conversions import LABORATORY, MotionQuality, flat, lift_to_msg, motion_to_msg
 from lifting_node.stamps import to_seconds, to_stamp
-from motion_tracker.core.errors import TrackerError
+from motion_tracker.core.exceptions import TrackerError
 from motion_tracker.core.lift_events import LiftPhase
 from motion_tracker.core.tracked import FROM_BOX, DetectedEvent, TrackedFrame
 from motion_tracker.core.tracked import MeasuredLift as TrackedLift

@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from human_model.typing import Array
 from lifting_node.cdr import HEAD, CdrError, Reader
-from motion_tracker.core.errors import TrackerError
+from motion_tracker.core.exceptions import TrackerError
 
 
 @dataclass(frozen=True, eq=False)

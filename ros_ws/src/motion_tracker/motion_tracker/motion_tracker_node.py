@@ -27,9 +27,9 @@ from lifting_node.pipeline_node import PipelineNode
 from lifting_node.run import run_node
 from motion_tracker import conversions
 from motion_tracker.core.configuration import tracker_from
-from motion_tracker.core.errors import MotionTrackerError
+from motion_tracker.core.exceptions import MotionTrackerError
 from motion_tracker.core.force_plates import SIDES
-from motion_tracker.core.recordings import RecordingSplitter
+from motion_tracker.core.recording_segmenter import RecordingSegmenter
 from motion_tracker.core.tracked import DetectedEvent, Notice, Output, TrackedFrame
 from motion_tracker.core.tracked import MeasuredLift as TrackedLift
 from motion_tracker.core.tracker import MotionTracker
@@ -67,7 +67,7 @@ class MotionTrackerNode(PipelineNode):
         self._task: tuple[float, npt.NDArray[np.float64]] | None = None
         self._tracker: MotionTracker | None = None
         self._early: deque[Feed] = deque(maxlen=EARLY_SAMPLES)
-        self._splitter: RecordingSplitter[Feed] = RecordingSplitter()
+        self._segmenter: RecordingSegmenter[Feed] = RecordingSegmenter()
         self._writer = LiveWriter()
         self._recording = 0
         self._lifts = 0
@@ -142,11 +142,11 @@ class MotionTrackerNode(PipelineNode):
         if not self.active:
             self.counts['samples while not active'] += 1
             return
-        if self._splitter.idle:
-            self._splitter.expect(
+        if self._segmenter.idle:
+            self._segmenter.expect(
                 name for name, topic in STREAMS.items() if self.count_publishers(topic)
             )
-        self._feed(self._splitter.push(stream, stamp, feed))
+        self._feed(self._segmenter.push(stream, stamp, feed))
 
     def _feed(self, samples: Sequence[tuple[int, Feed]]) -> None:
         """Feed samples, or keep them until person and task are known."""
@@ -179,10 +179,10 @@ class MotionTrackerNode(PipelineNode):
                 f'{subject.pseudonym}: {len(self._tracker.model.names)} markers, '
                 f'{self._tracker.model_source}'
             )
-            if self._tracker.inverse_kinematics.unseen:
+            if self._tracker.inverse_kinematics.unobservable:
                 self.get_logger().warning(
                     'no marker sees '
-                    + ', '.join(self._tracker.inverse_kinematics.unseen)
+                    + ', '.join(self._tracker.inverse_kinematics.unobservable)
                     + ': they stay at neutral'
                 )
         return self._tracker
@@ -207,9 +207,9 @@ class MotionTrackerNode(PipelineNode):
         """End of the recording: nothing more will come."""
         begun = self._tracker is not None
         before = self._lifts
-        self._feed(self._splitter.end())
+        self._feed(self._segmenter.end())
         self._end_recording()
-        self._recording = self._splitter.current
+        self._recording = self._segmenter.current
         response.success = begun
         response.message = (
             f'{self._lifts - before} lifts'

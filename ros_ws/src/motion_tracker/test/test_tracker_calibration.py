@@ -10,7 +10,7 @@ import pytest
 from human_model.anthropometry import segment_lengths
 from human_model.skeleton_3d import Skeleton3D
 from motion_tracker.core.calibration import calibrate
-from motion_tracker.core.errors import CalibrationError
+from motion_tracker.core.exceptions import CalibrationError
 from motion_tracker.core.inverse_kinematics import InverseKinematics
 from motion_tracker.core.marker_model import model_for
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from motion_tracker.core.errors import FilterError
+from motion_tracker.core.exceptions import FilterError
 from motion_tracker.core.filters import CausalFilter, derivatives, fill_gaps, zero_phase
 
 HALF_POWER = np.sqrt(0.5)

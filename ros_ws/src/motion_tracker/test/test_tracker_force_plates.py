@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from motion_tracker.core.errors import ForcePlateError
+from motion_tracker.core.exceptions import ForcePlateError
 from motion_tracker.core.force_plates import (
     PlateGeometry,
     ground_reaction,

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from human_model.report import SolveStatus
-from motion_tracker.core.errors import InverseKinematicsError
+from motion_tracker.core.exceptions import InverseKinematicsError
 from motion_tracker.core.ik_kernel import fit
 from motion_tracker.core.ik_types import IKSettings
 from motion_tracker.core.inverse_kinematics import InverseKinematics
@@ -117,7 +117,7 @@ def test_segment_without_markers_keeps_its_last_posture_and_is_named(exact, crou
     target[[i for i, s in enumerate(exact.model.segments) if s == 'hand_r']] = np.nan
     solution = exact.solve(target, bent)
     assert solution.status is SolveStatus.TRACKER_MARKERS_MISSING
-    assert solution.held == ('wrist_flex_r', 'wrist_dev_r')
+    assert solution.unobserved == ('wrist_flex_r', 'wrist_dev_r')
     assert 'wrist_flex_r' in solution.message
     assert solution.q[skeleton.index('wrist_flex_r')] == pytest.approx(0.4, abs=1e-3)
 

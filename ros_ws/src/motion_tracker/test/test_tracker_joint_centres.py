@@ -5,7 +5,7 @@
 import numpy as np
 import pytest
 
-from motion_tracker.core.errors import CalibrationError
+from motion_tracker.core.exceptions import CalibrationError
 from motion_tracker.core.joint_centres import harrington_hip, joint_centres, load_joint_definitions
 
 #: Pelvis 250 mm wide, 150 mm deep, leg of 900 mm; x forward, y left, z up, origin at mid-ASIS.

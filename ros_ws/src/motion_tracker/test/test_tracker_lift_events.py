@@ -5,7 +5,7 @@
 import numpy as np
 import pytest
 
-from motion_tracker.core.errors import LiftEventError
+from motion_tracker.core.exceptions import LiftEventError
 from motion_tracker.core.lift_events import (
     LiftEventDetector,
     LiftEventSettings,

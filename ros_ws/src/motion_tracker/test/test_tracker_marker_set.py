@@ -8,7 +8,7 @@ import pytest
 from human_model.anthropometry import segment_lengths
 from human_model.skeleton_3d import Skeleton3D
 from human_model.subject import Subject
-from motion_tracker.core.errors import MarkerSetError
+from motion_tracker.core.exceptions import MarkerSetError
 from motion_tracker.core.joint_centres import joint_centres, load_joint_definitions
 from motion_tracker.core.marker_model import from_anthropometry
 from motion_tracker.core.marker_set import (

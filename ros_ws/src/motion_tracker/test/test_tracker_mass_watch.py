@@ -5,7 +5,7 @@
 import numpy as np
 import pytest
 
-from motion_tracker.core.errors import ForcePlateError
+from motion_tracker.core.exceptions import ForcePlateError
 from motion_tracker.core.force_plates import STANDARD_GRAVITY
 from motion_tracker.core.mass_watch import MassWatch
 

@@ -7,7 +7,7 @@ import pytest
 
 from human_model.report import SolveStatus
 from motion_tracker.core.configuration import settings_from, tracker_from
-from motion_tracker.core.errors import MotionTrackerError, TrackerError
+from motion_tracker.core.exceptions import MotionTrackerError, TrackerError
 from motion_tracker.core.lift_events import LiftPhase
 from motion_tracker.core.tracked import (
     FROM_BOX,

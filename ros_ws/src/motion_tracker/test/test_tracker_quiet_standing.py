@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from human_model import compiled
-from motion_tracker.core.errors import TrackerError
+from motion_tracker.core.exceptions import TrackerError
 from motion_tracker.core.quiet_standing import coordinates_of, find_quiet_standing, missing_moment
 
 RATE = 100.0

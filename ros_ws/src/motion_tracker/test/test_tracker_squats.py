@@ -51,7 +51,7 @@ def test_markers_fit_within_fifteen_millimetres(tracked):
 def test_what_the_set_cannot_see_is_known(squats):
     model, _ = model_for(squats.subject, squats.marker_set)
     solver = InverseKinematics(Skeleton3D.of(squats.subject), model)
-    assert set(solver.unseen) == {
+    assert set(solver.unobservable) == {
         f'{name}_{side}' for side in 'rl' for name in ('wrist_flex', 'wrist_dev', 'mtp_angle')
     }
 

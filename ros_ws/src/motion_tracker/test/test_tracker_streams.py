@@ -7,7 +7,7 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from motion_tracker.core.errors import TrackerError
+from motion_tracker.core.exceptions import TrackerError
 from motion_tracker.core.streams import SampledStream, rate_of
 
 START = 1.7e9

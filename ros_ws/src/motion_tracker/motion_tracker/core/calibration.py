@@ -21,7 +21,7 @@ from human_model.anthropometry import segment_lengths
 from human_model.skeleton_3d import Skeleton3D
 from human_model.subject import Calibration, Subject
 from human_model.typing import Array
-from motion_tracker.core.errors import CalibrationError
+from motion_tracker.core.exceptions import CalibrationError
 from motion_tracker.core.ik_types import IKSettings
 from motion_tracker.core.inverse_kinematics import InverseKinematics
 from motion_tracker.core.joint_centres import (

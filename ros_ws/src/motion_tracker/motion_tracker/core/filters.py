@@ -18,7 +18,7 @@ from scipy.linalg import expm
 
 from human_model.typing import Array
 from motion_tracker.core import filter_kernel
-from motion_tracker.core.errors import FilterError
+from motion_tracker.core.exceptions import FilterError
 
 #: Cutoffs of the thesis, section 3.4 [Hz].
 MOTION_CUTOFF = 6.0

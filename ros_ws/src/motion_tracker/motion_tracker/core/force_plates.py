@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from human_model.typing import Array
 from motion_tracker.core import plate_kernel
-from motion_tracker.core.errors import ForcePlateError
+from motion_tracker.core.exceptions import ForcePlateError
 
 #: Standard gravity [m/s^2] (3rd CGPM 1901).
 STANDARD_GRAVITY = 9.80665
@@ -126,19 +126,19 @@ def ground_reaction(
     )
 
 
-def total_centre_of_pressure(force: Array, cop: Array) -> Array:
+def total_centre_of_pressure(force: Array, centre_of_pressure: Array) -> Array:
     """Centre of pressure (n, 3) [m] of all feet together.
 
     The mean of the feet's, weighted by their vertical forces; NaN where no foot is loaded.
 
     Parameters
     ----------
-    force, cop
+    force, centre_of_pressure
         Force [N] and centre of pressure [m] of each foot (n, feet, 3); zero and NaN while it is
         off its plate.
     """
     weight = force[..., 2:]
-    moment = np.where(weight > 0, weight * cop, 0.0).sum(axis=1)
+    moment = np.where(weight > 0, weight * centre_of_pressure, 0.0).sum(axis=1)
     total = weight.sum(axis=1)
     mean: Array = np.full_like(moment, np.nan)
     np.divide(moment, total, out=mean, where=total > 0)

@@ -22,7 +22,7 @@ import numpy.typing as npt
 
 from human_model.typing import Array
 from motion_tracker.core import hand_force_kernel
-from motion_tracker.core.errors import HandForceError
+from motion_tracker.core.exceptions import HandForceError
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,7 @@ class HandForceEstimator:
         """1 while both hands are at the box, 0 while one is well away from it."""
         return float(hand_force_kernel.gate(hands, box, self._reach, self.settings.fade))
 
-    def held(self, hands: Array, box: Array, support: float | None) -> float | None:
+    def carried_mass(self, hands: Array, box: Array, support: float | None) -> float | None:
         """Mass the hands carry at rest [kg]; None if the box may stand on something as well.
 
         Parameters

@@ -212,7 +212,7 @@ def _add_pairs(hessian: Array, pair: IntArray, share: Array, pair_weight: Array)
 
 
 @numba.njit(cache=True)
-def seen_curvature(
+def observed_curvature(
     tree: TreeArrays,
     q: Array,
     body: IntArray,

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Settings of the marker fit, and what it gives out."""
+"""Settings and results of the inverse kinematics."""
 
 from dataclasses import dataclass
 
@@ -23,10 +23,11 @@ class IKSettings:
         Of the lumbar rhythm [m^2/rad^2] with and without a marker on the lumbar segment; the
         first is the ratio of the variances of a trunk marker (5 mm of soft tissue, weight 2) and
         of the departure from the rhythm (4 deg).
-    held_weight : float
-        Of the previous value of a coordinate that no marker sees in this frame [m^2/rad^2].
-    seen_curvature : float
-        A coordinate counts as seen when the curvature of the fit about it, all others free to
+    unobserved_weight : float
+        Of the previous value of a coordinate that the markers of this frame do not determine
+        [m^2/rad^2].
+    observed_curvature : float
+        A coordinate counts as observed when the curvature of the fit about it, all others free to
         follow, exceeds this [m^2/rad^2]: a marker 3 cm off the axis.
     max_residual, rms_residual : float
         A frame whose largest or root mean square distance exceeds this is not good data [m].
@@ -38,8 +39,8 @@ class IKSettings:
     neutral_weight: float = 1e-5
     spine_weight: float = 1e-2
     blind_spine_weight: float = 0.3
-    held_weight: float = 1e-2
-    seen_curvature: float = 1e-3
+    unobserved_weight: float = 1e-2
+    observed_curvature: float = 1e-3
     max_residual: float = 0.08
     rms_residual: float = 0.03
     max_iterations: int = 60
@@ -60,8 +61,8 @@ class IKSolution:
         Of the residuals [m]; NaN without markers.
     used : int
         Markers used.
-    held : tuple of str
-        Coordinates that no marker saw in this frame.
+    unobserved : tuple of str
+        Coordinates that the markers of this frame do not determine.
     rejected : tuple of str
         Markers left out as swapped or wrongly labelled.
     status : SolveStatus
@@ -77,7 +78,7 @@ class IKSolution:
     rms: float
     maximum: float
     used: int
-    held: tuple[str, ...]
+    unobserved: tuple[str, ...]
     rejected: tuple[str, ...]
     status: SolveStatus
     message: str
@@ -92,22 +93,22 @@ class IKSolution:
 
 
 @dataclass(frozen=True, eq=False)
-class Sight:
-    """What a set of markers determines.
+class Observed:
+    """Coordinates that a set of markers determines.
 
     Attributes
     ----------
-    held : ndarray of bool (n_q,)
-        Coordinates that it does not see, though the full set does.
+    unobserved : ndarray of bool, shape (n_q,)
+        Coordinates that the set does not determine although the full set does.
     names : tuple of str
-        Theirs.
+        Names of the unobserved coordinates.
     lost : bool
-        Whether the pelvis' place is among them.
+        Whether the position or orientation of the pelvis is among them.
     prior_weight : ndarray (n_q,)
         Weight that draws each coordinate to its prior [m^2/rad^2].
     """
 
-    held: npt.NDArray[np.bool_]
+    unobserved: npt.NDArray[np.bool_]
     names: tuple[str, ...]
     lost: bool
     prior_weight: Array

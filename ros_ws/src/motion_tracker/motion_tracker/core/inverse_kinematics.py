@@ -22,17 +22,17 @@ from human_model.compiled import point_positions
 from human_model.report import SolveStatus
 from human_model.skeleton import Skeleton
 from human_model.typing import Array
-from motion_tracker.core.errors import InverseKinematicsError
-from motion_tracker.core.ik_kernel import fit, marked, misfit, seen_curvature
-from motion_tracker.core.ik_types import IKSettings, IKSolution, Sight
+from motion_tracker.core.exceptions import InverseKinematicsError
+from motion_tracker.core.ik_kernel import fit, marked, misfit, observed_curvature
+from motion_tracker.core.ik_types import IKSettings, IKSolution, Observed
 from motion_tracker.core.marker_model import MarkerModel
 from motion_tracker.core.marker_set import mirror_name
 from motion_tracker.core.spine_prior import spine_prior
 
 _PLACE = ('pelvis_tx', 'pelvis_ty', 'pelvis_tz', 'pelvis_tilt', 'pelvis_list', 'pelvis_rotation')
 
-#: Sets of markers whose sight is remembered.
-_MOST_SIGHTS = 256
+#: Greatest number of cached sets of markers.
+_CACHED_MARKER_SETS = 256
 
 #: Postures tried when there is no previous frame: standing, half and deep squat, as multiples.
 _CROUCH = {'hip_flexion': 1.4, 'knee_angle': 1.5, 'ankle_angle': 0.3}
@@ -93,23 +93,23 @@ class InverseKinematics:
             len(prior), self.settings.blind_spine_weight if blind else self.settings.spine_weight
         )
         self._weights = np.ascontiguousarray(model.weights, dtype=np.float64)
-        self._sights: dict[bytes, Sight] = {}
-        #: Coordinates seen when all markers are seen.
-        self.seen = self._seen(self._weights)
-        if not self.seen[place].all():
-            lost = [skeleton.coordinates[j] for j in np.flatnonzero(place & ~self.seen)]
+        self._cache: dict[bytes, Observed] = {}
+        #: Coordinates that the full marker set determines.
+        self.observed = self._observed(self._weights)
+        if not self.observed[place].all():
+            lost = [skeleton.coordinates[j] for j in np.flatnonzero(place & ~self.observed)]
             raise InverseKinematicsError(
                 f'the markers {", ".join(model.names)} do not determine {lost[0]}'
             )
 
     @property
-    def unseen(self) -> tuple[str, ...]:
+    def unobservable(self) -> tuple[str, ...]:
         """Coordinates that even the full marker set does not see; they stay at neutral."""
-        return tuple(self.skeleton.coordinates[j] for j in np.flatnonzero(~self.seen))
+        return tuple(self.skeleton.coordinates[j] for j in np.flatnonzero(~self.observed))
 
-    def _seen(self, weight: Array) -> npt.NDArray[np.bool_]:
+    def _observed(self, weight: Array) -> npt.NDArray[np.bool_]:
         """Coordinates (n_q,) that the markers of positive weight determine."""
-        curvature = seen_curvature(
+        curvature = observed_curvature(
             self.skeleton.tree,
             self.skeleton.standing(),
             self._body,
@@ -120,23 +120,26 @@ class InverseKinematics:
             self._pair_weight,
             self.settings.neutral_weight,
         )
-        return np.asarray(curvature > self.settings.seen_curvature)
+        return np.asarray(curvature > self.settings.observed_curvature)
 
-    def _sight(self, weight: Array) -> Sight:
-        """Return what the markers of positive weight determine, remembered by set of markers."""
+    def _find_observed(self, weight: Array) -> Observed:
+        """Return the coordinates that the markers of positive weight determine (cached)."""
         key = weight.tobytes()
-        sight = self._sights.get(key)
-        if sight is None:
-            held = self.seen & ~self._seen(weight)
-            names = tuple(self.skeleton.coordinates[j] for j in np.flatnonzero(held))
-            lost = bool(held[self._place].any() or not weight.any())
-            sight = Sight(
-                held, names, lost, np.where(held, self.settings.held_weight, self._neutral)
+        obs = self._cache.get(key)
+        if obs is None:
+            unobserved = self.observed & ~self._observed(weight)
+            names = tuple(self.skeleton.coordinates[j] for j in np.flatnonzero(unobserved))
+            lost = bool(unobserved[self._place].any() or not weight.any())
+            obs = Observed(
+                unobserved,
+                names,
+                lost,
+                np.where(unobserved, self.settings.unobserved_weight, self._neutral),
             )
-            if len(self._sights) >= _MOST_SIGHTS:
-                self._sights.clear()
-            self._sights[key] = sight
-        return sight
+            if len(self._cache) >= _CACHED_MARKER_SETS:
+                self._cache.clear()
+            self._cache[key] = obs
+        return obs
 
     def predict(self, q: npt.ArrayLike) -> Array:
         """Marker positions (n_markers, 3) [m] at coordinates q."""
@@ -171,11 +174,11 @@ class InverseKinematics:
             )
         target, weight = marked(measured, self._weights)
         last = None if previous is None else np.ascontiguousarray(previous, dtype=np.float64)
-        sight = self._sight(weight)
-        if sight.lost:
-            return self._lost(weight, last, sight)
+        obs = self._find_observed(weight)
+        if obs.lost:
+            return self._lost(weight, last, obs)
         q, position, iterations, converged, value, stationarity = self._best(
-            target, weight, last, sight
+            target, weight, last, obs
         )
         residuals, rms, maximum, used = misfit(position, target, weight)
         rejected: tuple[str, ...] = ()
@@ -188,12 +191,10 @@ class InverseKinematics:
                 q, position, target = crossed
                 swapped = 'of the left and right side are all exchanged'
             else:
-                q, position, weight, rejected, swapped = self._robust(
-                    q, target, weight, last, sight
-                )
+                q, position, weight, rejected, swapped = self._robust(q, target, weight, last, obs)
             residuals, rms, maximum, used = misfit(position, target, weight)
         status, message = self._judge(
-            converged, rms, maximum, residuals, used, sight, swapped, rejected
+            converged, rms, maximum, residuals, used, obs, swapped, rejected
         )
         return IKSolution(
             q,
@@ -201,7 +202,7 @@ class InverseKinematics:
             rms,
             maximum,
             used,
-            sight.names,
+            obs.names,
             rejected,
             status,
             message,
@@ -211,15 +212,15 @@ class InverseKinematics:
         )
 
     def _fit(
-        self, start: Array, target: Array, weight: Array, last: Array | None, sight: Sight | None
+        self, start: Array, target: Array, weight: Array, last: Array | None, obs: Observed | None
     ) -> tuple[Array, Array, int, bool, float, float]:
-        """Fit from one start; without a sight all coordinates are taken as seen."""
+        """Fit from one start; all coordinates count as observed if ``obs`` is None."""
         prior = np.zeros_like(start)
         prior_weight = self._neutral
-        if sight is not None:
-            prior_weight = sight.prior_weight
-            if sight.names and last is not None:
-                prior = np.where(sight.held, last, 0.0)
+        if obs is not None:
+            prior_weight = obs.prior_weight
+            if obs.names and last is not None:
+                prior = np.where(obs.unobserved, last, 0.0)
         result: tuple[Array, Array, int, bool, float, float] = fit(
             self.skeleton.tree,
             start,
@@ -240,12 +241,12 @@ class InverseKinematics:
         return result
 
     def _best(
-        self, target: Array, weight: Array, last: Array | None, sight: Sight | None
+        self, target: Array, weight: Array, last: Array | None, obs: Observed | None
     ) -> tuple[Array, Array, int, bool, float, float]:
         if last is not None:
-            return self._fit(last, target, weight, last, sight)
+            return self._fit(last, target, weight, last, obs)
         fits = [
-            self._fit(start, target, weight, None, sight) for start in self._starts(target, weight)
+            self._fit(start, target, weight, None, obs) for start in self._starts(target, weight)
         ]
         return min(fits, key=lambda result: result[4])
 
@@ -290,7 +291,7 @@ class InverseKinematics:
         return q, position, np.where((seen > 0)[:, None], crossed, position)
 
     def _robust(
-        self, q: Array, target: Array, weight: Array, last: Array | None, sight: Sight
+        self, q: Array, target: Array, weight: Array, last: Array | None, obs: Observed
     ) -> tuple[Array, Array, Array, tuple[str, ...], str]:
         """Refit without the markers that do not fit; say which of them look exchanged."""
         scale = self.settings.rms_residual
@@ -301,7 +302,7 @@ class InverseKinematics:
             distance = np.linalg.norm(position - target, axis=1)
             # Geman and McClure 1987: weight of a redescending estimator.
             trust = weight / (1.0 + (distance / scale) ** 2) ** 2
-            start, position, *_ = self._fit(start, target, trust, last, sight)
+            start, position, *_ = self._fit(start, target, trust, last, obs)
         distance = np.linalg.norm(position - target, axis=1)
         bad = (weight > 0) & (distance > self.settings.max_residual)
         names = self.model.names
@@ -313,7 +314,7 @@ class InverseKinematics:
                 f'{crossed:.3f} m when exchanged)'
             )
         good = np.where(bad, 0.0, weight)
-        start, position, *_ = self._fit(start, target, good, last, sight)
+        start, position, *_ = self._fit(start, target, good, last, obs)
         return (
             start,
             position,
@@ -350,7 +351,7 @@ class InverseKinematics:
         maximum: float,
         residuals: Array,
         used: int,
-        sight: Sight,
+        obs: Observed,
         swapped: str,
         rejected: tuple[str, ...],
     ) -> tuple[SolveStatus, str]:
@@ -371,13 +372,13 @@ class InverseKinematics:
             }
             blind = sorted(set(self.model.segments) - seen)
             words += [f'no marker seen on {", ".join(blind)}'] if blind else []
-        if sight.names:
-            words.append(f'{", ".join(sight.names)} not seen: held at the previous value')
+        if obs.names:
+            words.append(f'{", ".join(obs.names)} not seen: held at the previous value')
         if words:
             return SolveStatus.TRACKER_MARKERS_MISSING, '; '.join(words)
         return SolveStatus.OK, f'left out: {", ".join(rejected)}' if rejected else ''
 
-    def _lost(self, weight: Array, last: Array | None, sight: Sight) -> IKSolution:
+    def _lost(self, weight: Array, last: Array | None, obs: Observed) -> IKSolution:
         """Answer for a frame whose markers do not even place the pelvis."""
         q = self.skeleton.standing() if last is None else last.copy()
         used = int((weight > 0).sum())
@@ -387,7 +388,7 @@ class InverseKinematics:
             np.nan,
             np.nan,
             used,
-            sight.names,
+            obs.names,
             (),
             SolveStatus.TRACKER_MARKERS_MISSING,
             f'{used} of {len(weight)} markers: the pelvis is not determined',

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from human_model.typing import Array
-from motion_tracker.core.errors import CalibrationError
+from motion_tracker.core.exceptions import CalibrationError
 from motion_tracker.core.marker_set import DATA
 
 #: Segment whose proximal joint each centre is.

@@ -96,7 +96,7 @@ class LiveMotion:
         lifting, end_known
             Whether a lift is under way, and the stamp at which the end of the last one was known.
         """
-        (q, qd, qdd), carried = self._filtered(stamp, solution.q, box)
+        (q, qd, qdd), box_motion = self._filtered(stamp, solution.q, box)
         time = stamp - self.delay
         forces, silent = self._ground(time)
         places = self._skeleton.points_and_frames(q)
@@ -108,13 +108,15 @@ class LiveMotion:
             vertical = right + left
             need = float(needed_force(self._skeleton, q, qd, qdd)[2])
             missing = need - vertical
-        if carried is not None:
-            forces |= self._carry(
-                time, hands, carried, missing, self._status.settling(stamp), lifting, end_known
+        if box_motion is not None:
+            forces |= self._hand_force_and_box(
+                time, hands, box_motion, missing, self._status.settling(stamp), lifting, end_known
             )
         if missing is not None:
-            held = self._held(hands, None if carried is None else carried[0], lifting)
-            check = self._status.weigh(stamp, vertical, need, held, self._rate)
+            mass = self._carried_mass(
+                hands, None if box_motion is None else box_motion[0], lifting
+            )
+            check = self._status.weigh(stamp, vertical, need, mass, self._rate)
             if check is not None:
                 notices.append(Notice(str(check), check.ok))
         motion = self._skeleton.body_motion(time, q, qd, qdd, places=places, **forces)
@@ -159,20 +161,26 @@ class LiveMotion:
                 wrench[side] = row
         if silent:
             return {}, silent
-        force, cop, free = feet(
+        force, centre_of_pressure, free = feet(
             wrench, self._rotation, self._origin, self._surface, self._settings.force_threshold
         )
-        return {'ground_force': force, 'centre_of_pressure': cop, 'free_moment': free}, silent
+        return {
+            'ground_force': force,
+            'centre_of_pressure': centre_of_pressure,
+            'free_moment': free,
+        }, silent
 
-    def _held(self, hands: Array, box: Array | None, lifting: bool) -> float | None:
+    def _carried_mass(self, hands: Array, box: Array | None, lifting: bool) -> float | None:
         """Mass in the hands [kg]; None while it is not known."""
         if self._hand_force.box_mass == 0.0:
             return 0.0
         if box is None:
             return None if lifting else 0.0
-        return self._hand_force.held(hands, box, self._hand_force.support if lifting else None)
+        return self._hand_force.carried_mass(
+            hands, box, self._hand_force.support if lifting else None
+        )
 
-    def _carry(
+    def _hand_force_and_box(
         self,
         time: float,
         hands: Array,

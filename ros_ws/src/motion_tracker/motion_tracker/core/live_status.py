@@ -35,12 +35,12 @@ class LiveStatus:
         return stamp < self._settled
 
     def weigh(
-        self, stamp: float, vertical: float, need: float, held: float | None, rate: float
+        self, stamp: float, vertical: float, need: float, carried_mass: float | None, rate: float
     ) -> MassCheck | None:
         """Take one sample for the `MassWatch`; return the check when its verdict is new."""
         if self.settling(stamp):
             return None
-        check = self._watch.push(vertical, need, held, rate)
+        check = self._watch.push(vertical, need, carried_mass, rate)
         if not self._watch.agrees:
             self._doubted, self._doubt = stamp, str(self._watch.check)
         return check

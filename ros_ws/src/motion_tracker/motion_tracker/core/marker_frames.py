@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from human_model.typing import Array
-from motion_tracker.core.errors import TrackerError
+from motion_tracker.core.exceptions import TrackerError
 
 IntArray = npt.NDArray[np.intp]
 

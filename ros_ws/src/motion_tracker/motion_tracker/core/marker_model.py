@@ -10,7 +10,7 @@ import numpy as np
 from human_model.anthropometry import segment_lengths
 from human_model.subject import Calibration, Subject
 from human_model.typing import Array
-from motion_tracker.core.errors import MarkerSetError
+from motion_tracker.core.exceptions import MarkerSetError
 from motion_tracker.core.marker_set import MarkerSet
 
 

@@ -22,7 +22,7 @@ import numpy as np
 from human_model.anthropometry import segment_lengths
 from human_model.subject import Subject
 from human_model.typing import Array
-from motion_tracker.core.errors import MarkerSetError
+from motion_tracker.core.exceptions import MarkerSetError
 
 #: Person the positions of the marker sets belong to.
 REFERENCE_SUBJECT = Subject('reference', 'male', 75.0, 1.75, 30.0)

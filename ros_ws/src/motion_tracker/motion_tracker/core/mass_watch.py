@@ -8,7 +8,7 @@ import numba
 import numpy as np
 
 from human_model.typing import Array
-from motion_tracker.core.errors import ForcePlateError
+from motion_tracker.core.exceptions import ForcePlateError
 from motion_tracker.core.force_plates import STANDARD_GRAVITY
 
 

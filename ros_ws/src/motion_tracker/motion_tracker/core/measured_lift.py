@@ -91,6 +91,11 @@ class LiftBuilder:
         """
         return self._steps(lift_id, start, end, records, rate, copy(estimator), support, doubt)
 
+    def forget(self, before: float) -> None:
+        """Remove the samples of plates and box before a stamp [s]; no later lift needs them."""
+        for stream in (*self._wrenches.values(), self._box):
+            stream.forget(before)
+
     def _steps(
         self,
         lift_id: str,

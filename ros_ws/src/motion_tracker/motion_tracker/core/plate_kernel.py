@@ -17,7 +17,7 @@ def _foot(
     surface: float,
     threshold: float,
     total: Array,
-    cop: Array,
+    centre_of_pressure: Array,
     free_moment: Array,
 ) -> bool:
     """Write force, centre of pressure and free moment of one foot (3,); whether it is loaded."""
@@ -27,7 +27,7 @@ def _foot(
             f[i] += rotation[i, j] * force[j]
             m[i] += rotation[i, j] * moment[j]
     total[:] = 0.0
-    cop[:] = np.nan
+    centre_of_pressure[:] = np.nan
     free_moment[:] = 0.0
     if not f[2] > threshold:
         return False
@@ -35,7 +35,11 @@ def _foot(
     x = (height * f[0] - m[1]) / f[2]
     y = (m[0] + height * f[1]) / f[2]
     total[:] = f
-    cop[0], cop[1], cop[2] = x + origin[0], y + origin[1], surface
+    centre_of_pressure[0], centre_of_pressure[1], centre_of_pressure[2] = (
+        x + origin[0],
+        y + origin[1],
+        surface,
+    )
     free_moment[2] = m[2] - x * f[1] + y * f[0]
     return True
 
@@ -49,7 +53,7 @@ def reaction(
     The arguments, the results and the equations are those of `force_plates.ground_reaction`.
     """
     n = force.shape[0]
-    total, cop, free_moment = np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3))
+    total, centre_of_pressure, free_moment = np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3))
     loaded = np.empty(n, dtype=np.bool_)
     for k in range(n):
         loaded[k] = _foot(
@@ -60,10 +64,10 @@ def reaction(
             surface,
             threshold,
             total[k],
-            cop[k],
+            centre_of_pressure[k],
             free_moment[k],
         )
-    return total, cop, free_moment, loaded
+    return total, centre_of_pressure, free_moment, loaded
 
 
 @numba.njit(cache=True)
@@ -76,7 +80,7 @@ def feet(
     (feet, 3) and heights of the surfaces (feet,).
     """
     shape = (1, wrench.shape[0], 3)
-    total, cop, free_moment = np.empty(shape), np.empty(shape), np.empty(shape)
+    total, centre_of_pressure, free_moment = np.empty(shape), np.empty(shape), np.empty(shape)
     for k in range(wrench.shape[0]):
         _foot(
             wrench[k, :3],
@@ -86,7 +90,7 @@ def feet(
             surface[k],
             threshold,
             total[0, k],
-            cop[0, k],
+            centre_of_pressure[0, k],
             free_moment[0, k],
         )
-    return total, cop, free_moment
+    return total, centre_of_pressure, free_moment

@@ -19,7 +19,7 @@ from human_model.skeleton import Skeleton
 from human_model.skeleton_3d import Skeleton3D
 from human_model.subject import Subject
 from human_model.typing import Array
-from motion_tracker.core.errors import TrackerError
+from motion_tracker.core.exceptions import TrackerError
 from motion_tracker.core.filters import derivatives, zero_phase
 from motion_tracker.core.inverse_kinematics import InverseKinematics
 from motion_tracker.core.marker_model import model_for

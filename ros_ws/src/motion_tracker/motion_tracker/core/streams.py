@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from human_model.typing import Array
 from motion_tracker.core import filter_kernel
-from motion_tracker.core.errors import TrackerError
+from motion_tracker.core.exceptions import TrackerError
 from motion_tracker.core.filters import CausalFilter, zero_phase
 
 #: Samples from which the rate of a stream is taken.

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from human_model.motion import BodyMotion, Lift
 from human_model.report import SolveStatus
 from human_model.typing import Array
-from motion_tracker.core.errors import TrackerError
+from motion_tracker.core.exceptions import TrackerError
 from motion_tracker.core.filters import MOTION_CUTOFF, PLATE_CUTOFF
 from motion_tracker.core.force_plates import total_centre_of_pressure
 from motion_tracker.core.hand_force import HandForceSettings
@@ -40,7 +40,7 @@ class TrackerSettings:
     margin : float
         Time before and after a lift that takes part in its zero-phase filters [s].
     mass_tolerance : float
-        Accepted deviation of the plates from subject and held box, as a share.
+        Accepted relative deviation of the plates from the masses of subject and carried box.
     ik, events, hand_force
         Settings of the parts.
     """

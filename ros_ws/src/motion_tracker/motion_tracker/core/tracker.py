@@ -4,8 +4,8 @@
 
 Streams may arrive in any interleaving: a marker frame waits until both plates and the box (if
 there are any) have delivered samples up to its stamp, so the results depend on the stamps
-alone and are the same live, replayed and offline. What a frame leaves to do that its live sample
-does not need comes with the sample that arrives next.
+alone and are the same live, replayed and offline. Whole lifts are built in the background
+(`lift_queue`).
 """
 
 from collections import Counter, deque
@@ -18,8 +18,7 @@ from human_model.motion import POINTS
 from human_model.skeleton_3d import Skeleton3D
 from human_model.subject import Subject
 from human_model.typing import Array
-from motion_tracker.core.arrival import Arrival
-from motion_tracker.core.errors import TrackerError
+from motion_tracker.core.exceptions import TrackerError
 from motion_tracker.core.filters import settling_time
 from motion_tracker.core.force_plates import SIDES, PlateGeometry
 from motion_tracker.core.hand_force import HandForceEstimator
@@ -27,7 +26,7 @@ from motion_tracker.core.ik_types import IKSolution
 from motion_tracker.core.initial_rest import initial_speed
 from motion_tracker.core.inverse_kinematics import InverseKinematics
 from motion_tracker.core.lift_events import LiftEventDetector
-from motion_tracker.core.lift_records import LiftRecords
+from motion_tracker.core.lift_queue import LiftQueue
 from motion_tracker.core.live_motion import HANDS, LiveMotion
 from motion_tracker.core.live_status import LiveStatus
 from motion_tracker.core.marker_frames import MarkerFrames
@@ -35,6 +34,7 @@ from motion_tracker.core.marker_model import model_for
 from motion_tracker.core.marker_set import MarkerSet
 from motion_tracker.core.mass_watch import MassWatch
 from motion_tracker.core.measured_lift import LiftBuilder
+from motion_tracker.core.stream_synchronizer import StreamSynchronizer
 from motion_tracker.core.streams import RATE_SAMPLES, SAME, SampledStream, rate_of
 from motion_tracker.core.tracked import FROM_BOX, FROM_HANDS, Notice, Output, TrackerSettings
 
@@ -62,7 +62,8 @@ class MotionTracker:
     first_lift
         Number of the first lift, which goes into its name.
     clock
-        Time now [s] by which a missing stream is given up (`Arrival`); None when reading files.
+        Current time [s], by which a missing stream is declared lost (`StreamSynchronizer`); None
+        when reading files.
 
     Attributes
     ----------
@@ -97,7 +98,6 @@ class MotionTracker:
         builder = LiftBuilder(
             self.skeleton, self.settings, self._plates, self._wrenches, self._box
         )
-        self._lifts = LiftRecords(builder, self.settings.margin, first_lift)
         self._frames = MarkerFrames(
             self.model.names, marker_set.names if marker_set else (), self.counts
         )
@@ -105,18 +105,20 @@ class MotionTracker:
             FROM_BOX: LiftEventDetector(self.settings.events),
             FROM_HANDS: LiftEventDetector(self.settings.events),
         }
-        self._arrival = Arrival(self.settings.wait, self.settings.longest_gap, clock)
-        self._queue: deque[tuple[float, Array, IKSolution, float]] = deque()
+        self._synchronizer = StreamSynchronizer(
+            self.settings.wait, self.settings.longest_gap, clock
+        )
+        self._pending: deque[tuple[float, Array, IKSolution, float]] = deque()
         self._newest = -np.inf
         self._rate = 0.0
         self._live: LiveMotion | None = None
         self._last_q: Array | None = None
-        # Frames that have left something to do, and the last of them.
-        self._left = 0
-        self._latest = -np.inf
         self._status = LiveStatus(
             MassWatch(subject.mass, self.settings.mass_tolerance),
             settling_time(self.settings.motion_cutoff),
+        )
+        self._lifts = LiftQueue(
+            builder, self.settings.margin, first_lift, self._hand_force, self._status
         )
         self._notices: list[Output] = []
 
@@ -171,8 +173,8 @@ class MotionTracker:
         solution = self.inverse_kinematics.solve(target, self._last_q)
         if np.isfinite(solution.rms):
             self._last_q = solution.q
-        self._queue.append((stamp, target, solution, self._arrival.arrive()))
-        return self._work(None)
+        self._pending.append((stamp, target, solution, self._synchronizer.register()))
+        return self._process(True)
 
     def push_wrench(
         self,
@@ -189,65 +191,61 @@ class MotionTracker:
         if len(sample) != _WRENCH:
             raise TrackerError(f'{stream.name}: force and moment have {len(sample)} components')
         stream.push(stamp, sample)
-        return self._work(stream)
+        return self._process(self._reaches_frame(stream))
 
     def push_box(self, stamp: float, position: Sequence[float] | Array) -> list[Output]:
         """Take one position of the box's centre (3,), world [m]."""
         if len(position) != _PLACE:
             raise TrackerError(f'box: position has {len(position)} components')
         self._box.push(stamp, position)
-        return self._work(self._box)
+        return self._process(self._reaches_frame(self._box))
 
     def flush(self) -> list[Output]:
-        """End of the recording: work off what still waits, and close open lifts."""
+        """End of the recording: process pending frames, and finish open lifts."""
         for stream in (*self._wrenches.values(), self._box):
             stream.settle()
-        outputs = self._drain(True)
+        outputs = self._process_pending(True)
         for source, detector in self._detectors.items():
             outputs += self._lifts.take(detector.finish(), source)
-        self._begin_builds(np.inf)
-        return outputs + self._lifts.build()
+        self._lifts.begin(np.inf, self._rate)
+        return outputs + self._lifts.finish()
 
-    def _work(self, stream: SampledStream | None) -> list[Output]:
-        """Work off what the newest sample, of ``stream`` or a marker frame, makes possible."""
-        outputs: list[Output] = []
-        if stream is None or (self._queue and stream.last >= self._queue[0][0] - SAME):
-            outputs = self._drain(False)
-        # What a frame has left to do waits for a sample that brings no other frame.
-        if self._left > (1 if outputs else 0):
-            self._left -= 1
-            outputs += self._lifts.build(1)
-            needed = self._lifts.forget(self._latest)
-            if needed is not None:
-                for buffer in (*self._wrenches.values(), self._box):
-                    buffer.forget(needed)
-        return outputs
+    def _reaches_frame(self, stream: SampledStream) -> bool:
+        """Whether the stream has a sample at or after the first pending frame."""
+        return bool(self._pending) and stream.last >= self._pending[0][0] - SAME
 
-    def _awaited(self) -> list[SampledStream]:
+    def _process(self, frames: bool) -> list[Output]:
+        """Process pending frames, if ``frames``, and take a step of the lifts being built."""
+        outputs = self._process_pending(False) if frames else []
+        return outputs + self._lifts.work(bool(outputs))
+
+    def _needed_streams(self) -> list[SampledStream]:
         streams = list(self._wrenches.values())
         return [*streams, self._box] if self._hand_force.box_mass > 0 else streams
 
-    def _drain(self, final: bool) -> list[Output]:
+    def _process_pending(self, final: bool) -> list[Output]:
         outputs: list[Output] = []
         if self._rate == 0.0:
-            if len(self._queue) <= RATE_SAMPLES and not (final and len(self._queue) > 2):
+            if len(self._pending) <= RATE_SAMPLES and not (final and len(self._pending) > 2):
                 return outputs
             self._start()
-        while self._queue:
-            stamp, _, solution, arrived = self._queue[0]
-            ready, said = self._arrival.ready(stamp, arrived, self._newest, self._awaited(), final)
-            self._notices += said
-            if not ready:
+        while self._pending:
+            stamp, _, solution, arrival = self._pending[0]
+            synchronized, notices = self._synchronizer.synchronized(
+                stamp, arrival, self._newest, self._needed_streams(), final
+            )
+            self._notices += notices
+            if not synchronized:
                 break
-            self._queue.popleft()
-            outputs += self._frame(stamp, solution)
+            self._pending.popleft()
+            outputs += self._process_frame(stamp, solution)
         notices, self._notices = self._notices, []
         return notices + outputs
 
     def _start(self) -> None:
-        stamps = [stamp for stamp, *_ in self._queue]
+        stamps = [stamp for stamp, *_ in self._pending]
         self._rate = rate_of(stamps, 'markers')
-        speed = initial_speed(stamps, [target for _, target, *_ in self._queue])
+        speed = initial_speed(stamps, [target for _, target, *_ in self._pending])
         if speed > self.settings.events.rest_speed:
             self._status.settle(
                 stamps[0],
@@ -265,11 +263,9 @@ class MotionTracker:
             self.counts,
         )
 
-    def _frame(self, stamp: float, solution: IKSolution) -> list[Output]:
+    def _process_frame(self, stamp: float, solution: IKSolution) -> list[Output]:
         assert self._live is not None
         self._lifts.record(stamp, solution)
-        self._latest = stamp
-        self._left += 1
         if not np.isfinite(solution.rms):
             self.counts['markers: frames without a pelvis'] += 1
             return []
@@ -278,11 +274,11 @@ class MotionTracker:
         frame, notices = self._live.sample(
             stamp, solution, box, self._lifts.lifting, self._lifts.end_known
         )
-        self._begin_builds(stamp)
+        self._lifts.begin(stamp, self._rate)
         return [frame, *notices, *events]
 
     def _detect(self, stamp: float, solution: IKSolution, box: Array | None) -> list[Output]:
-        if self._hand_force.box_mass > 0 and 'box' not in self._arrival.absent:
+        if self._hand_force.box_mass > 0 and 'box' not in self._synchronizer.lost:
             if box is None:
                 return []
             events = self._detectors[FROM_BOX].push(stamp, float(box[2]))
@@ -292,6 +288,3 @@ class MotionTracker:
             stamp, float(heights[HANDS].mean()), float(heights[_SHOULDERS].mean())
         )
         return self._lifts.take(events, FROM_HANDS)
-
-    def _begin_builds(self, now: float) -> None:
-        self._lifts.begin_builds(now, self._rate, self._hand_force, self._status)

@@ -1,9 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""The lifts of one recording: under way, over, being built, with the frames they are made of."""
+"""Queue of the lifts of one recording: named at their events, built in steps in the background.
+
+A whole lift takes a dozen steps of about a millisecond. Each marker frame allows one step. The
+step is taken with a later sample that completes no frame, so that a live frame does not wait for
+it.
+"""
 
 from collections import deque
 from collections.abc import Iterator, Sequence
+
+import numpy as np
 
 from motion_tracker.core.hand_force import HandForceEstimator
 from motion_tracker.core.ik_types import IKSolution
@@ -12,12 +19,12 @@ from motion_tracker.core.live_status import LiveStatus
 from motion_tracker.core.measured_lift import LiftBuilder
 from motion_tracker.core.tracked import FROM_BOX, DetectedEvent, FrameRecord, MeasuredLift, Output
 
-#: Frames older than this are forgotten unless a lift needs them [s].
+#: Frames older than this are removed unless a lift needs them [s].
 _HISTORY = 15.0
 
 
-class LiftRecords:
-    """Memory of one recording: its latest frames and the lifts in them.
+class LiftQueue:
+    """Recent frames of a recording, and the lifts that are built from them.
 
     Parameters
     ----------
@@ -26,23 +33,36 @@ class LiftRecords:
     margin
         Time before and after a lift that takes part in its filters [s].
     first_lift
-        Number of the first lift, which goes into its name.
+        Number of the first lift, which is part of its name.
+    hand_force, status
+        Of the recording; a lift uses their state at the begin of its building.
 
     Attributes
     ----------
     number : int
-        Of the last lift that began; ``first_lift`` - 1 before.
+        Of the last lift that began; ``first_lift`` - 1 before the first.
     end_known : float or None
-        Stamp at which the end of the last lift was known [s]; None while one is under way or none
-        was.
+        Stamp at which the end of the last lift was known [s]; None during a lift and before the
+        first end.
     """
 
-    def __init__(self, builder: LiftBuilder, margin: float, first_lift: int) -> None:
+    def __init__(
+        self,
+        builder: LiftBuilder,
+        margin: float,
+        first_lift: int,
+        hand_force: HandForceEstimator,
+        status: LiveStatus,
+    ) -> None:
         self.number = first_lift - 1
         self.end_known: float | None = None
         self._builder = builder
         self._margin = margin
+        self._hand_force = hand_force
+        self._status = status
         self._frames: deque[FrameRecord] = deque()
+        self._latest = -np.inf
+        self._allowed_steps = 0
         self._current: tuple[str, LiftEvent, float | None] | None = None
         self._due: deque[tuple[str, LiftEvent, LiftEvent, float | None]] = deque()
         self._builds: deque[tuple[float, Iterator[MeasuredLift | None]]] = deque()
@@ -53,8 +73,10 @@ class LiftRecords:
         return self._current is not None
 
     def record(self, stamp: float, solution: IKSolution) -> None:
-        """Keep a frame for the lift it may belong to."""
+        """Store a frame for the lift that it may belong to, and allow one step of the builds."""
         self._frames.append(FrameRecord(stamp, solution))
+        self._latest = stamp
+        self._allowed_steps += 1
 
     def take(self, events: Sequence[LiftEvent], source: str) -> list[Output]:
         """Name the lifts of events that were detected from ``source``."""
@@ -74,10 +96,8 @@ class LiftRecords:
                 outputs.append(DetectedEvent(event, lift_id, source))
         return outputs
 
-    def begin_builds(
-        self, now: float, rate: float, estimator: HandForceEstimator, status: LiveStatus
-    ) -> None:
-        """Begin to build the lifts whose frames have come in.
+    def begin(self, now: float, rate: float) -> None:
+        """Begin to build the lifts whose frames have all arrived.
 
         Parameters
         ----------
@@ -85,8 +105,6 @@ class LiftRecords:
             Stamp of the latest frame [s].
         rate
             Of the marker frames [Hz].
-        estimator, status
-            What was learnt until now.
         """
         while self._due and now >= self._due[0][2].time + self._margin:
             lift_id, start, end, support = self._due.popleft()
@@ -95,46 +113,59 @@ class LiftRecords:
                 for frame in self._frames
                 if start.time - self._margin <= frame.stamp <= end.time + self._margin
             ]
-            self._builds.append(
-                (
-                    start.time,
-                    self._builder.build(
-                        lift_id,
-                        start.time,
-                        end.time,
-                        frames,
-                        rate,
-                        estimator,
-                        support,
-                        status.doubt_since(start.time),
-                    ),
-                )
+            build = self._builder.build(
+                lift_id,
+                start.time,
+                end.time,
+                frames,
+                rate,
+                self._hand_force,
+                support,
+                self._status.doubt_since(start.time),
             )
+            self._builds.append((start.time, build))
 
-    def build(self, steps: int | None = None) -> list[Output]:
-        """Take some steps, or all, of building measured lifts; return those that are done."""
-        done: list[Output] = []
-        while self._builds and steps != 0:
-            lift = next(self._builds[0][1])
-            if lift is not None:
-                done.append(lift)
-                self._builds.popleft()
-            if steps is not None:
-                steps -= 1
+    def work(self, frame_completed: bool) -> list[Output]:
+        """Take one allowed step and remove what is not needed any more; return a finished lift.
+
+        Parameters
+        ----------
+        frame_completed
+            Whether the sample that was just processed completed a frame: the step that this frame
+            allows then waits for the next sample.
+        """
+        if self._allowed_steps <= int(frame_completed):
+            return []
+        self._allowed_steps -= 1
+        done = self._step()
+        self._forget()
         return done
 
-    def forget(self, now: float) -> float | None:
-        """Drop old frames every now and then; return the stamp [s] before which none is needed.
+    def finish(self) -> list[Output]:
+        """Build all lifts to the end."""
+        done: list[Output] = []
+        while self._builds:
+            done += self._step()
+        return done
 
-        None while there is nothing to drop.
-        """
-        keep = now - _HISTORY
+    def _step(self) -> list[Output]:
+        if not self._builds:
+            return []
+        lift = next(self._builds[0][1])
+        if lift is None:
+            return []
+        self._builds.popleft()
+        return [lift]
+
+    def _forget(self) -> None:
+        """Remove old frames and samples from time to time."""
+        keep = self._latest - _HISTORY
         for start in [start for start, _ in self._builds] + [due[1].time for due in self._due]:
             keep = min(keep, start - 2 * self._margin)
         if self._current is not None:
             keep = min(keep, self._current[1].time - 2 * self._margin)
         if not self._frames or self._frames[0].stamp >= keep - _HISTORY:
-            return None
+            return
         while self._frames[0].stamp < keep:
             self._frames.popleft()
-        return keep
+        self._builder.forget(keep)

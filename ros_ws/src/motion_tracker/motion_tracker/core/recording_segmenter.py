@@ -27,7 +27,7 @@ class _Stream:
 
 
 @dataclass
-class RecordingSplitter(Generic[T]):
+class RecordingSegmenter(Generic[T]):
     """Sorts the samples of several streams by recording.
 
     Attributes
