@@ -12,6 +12,9 @@ TOOL = $(CLEAN) $(PYTHON_BIN) -m
 BOOTSTRAP = $$(if [ -z "$$PYTHON" ] && $(PYTHON_BIN) -E -s -S -c '' 2>/dev/null; \
 	then echo $(PYTHON_BIN); else sh scripts/find_python.sh; fi)
 SETUP = python=$(BOOTSTRAP) && "$$python" -E -s -S scripts/setup_environment.py
+# All Python code but the tests, launch files and setup.py.
+TYPED = $(patsubst %/__init__.py,%,$(filter-out %/test/__init__.py,$(wildcard ros_ws/src/*/*/__init__.py))) \
+	scripts benchmarks docs bags/simulate
 PYTEST_ARGS ?=
 BENCH_ARGS ?=
 DEMO_ARGS ?=
@@ -42,9 +45,8 @@ lint: setup-dev ## ruff over everything: rules and format
 	@$(TOOL) ruff check --quiet .
 	@$(TOOL) ruff format --check --quiet .
 
-typecheck: setup-dev ## mypy, strict, over the pure cores
-	@$(TOOL) mypy $(wildcard ros_ws/src/human_model/human_model \
-		ros_ws/src/lifting_messages/lifting_messages ros_ws/src/*/*/core)
+typecheck: setup-dev ## mypy, strict, over all packages, scripts, benchmarks and generators
+	@$(TOOL) mypy $(TYPED)
 
 bench: reference-models ## speed and accuracy figures
 	@test -f benchmarks/run.py || { echo 'there is no benchmarks/run.py' >&2; exit 1; }

@@ -13,6 +13,7 @@ import contextlib
 import io
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -25,7 +26,7 @@ LIFTS = ('symmetric_7kg', 'symmetric_12kg', 'symmetric_max', 'asymmetric_7kg')
 DISSERTATION = {'symmetric_7kg': (2298.0, 732.0), 'symmetric_12kg': (2390.0, 796.0)}
 
 
-def peaks(load: object) -> tuple[float, float, int, int]:
+def peaks(load: Any) -> tuple[float, float, int, int]:
     """Return peak compression and anterior shear [N], and how many samples are good of all."""
     good = np.asarray(load.status) == 0
     if not good.any():

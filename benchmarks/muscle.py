@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from benchmarks import muscle_motions as motions
@@ -61,7 +61,7 @@ def own_frames(given: BenchMotion) -> OwnFrames:
     solver = LoadSolver(motion.model, OPTIONS)
     external = [motion.external(k) for k in range(n)]
     wall, processor = np.zeros((ROUNDS + 1, n)), np.zeros((ROUNDS + 1, n))
-    solutions = []
+    solutions: list[Any] = []
     for turn in range(ROUNDS + 1):
         solver.reset()
         solutions = []

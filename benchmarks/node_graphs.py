@@ -140,7 +140,7 @@ def _nobody(_message: bytes) -> None:
     """Stand for the callback of a subscription that is never spun."""
 
 
-def _taken(subscription: Subscription[Any], time_of: str) -> list[tuple[float, float]]:
+def _taken(subscription: Subscription, time_of: str) -> list[tuple[float, float]]:
     """Stamps of the messages that lie in a subscription, each with a time that DDS has noted."""
     taken = []
     with subscription.handle:
@@ -247,7 +247,7 @@ class Stations:
             time.sleep(0.05)
         return [station.latencies() for station in self._stations]
 
-    def _set_going(self, clients: list[Client[Any, Any, Any]]) -> None:
+    def _set_going(self, clients: list[Client]) -> None:
         """Have all players begin; ask those again whose answer was lost."""
         waiting = {client: [client.call_async(SetBool.Request(data=False))] for client in clients}
         end = time.monotonic() + PLAYER_LIMIT

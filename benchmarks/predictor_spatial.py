@@ -75,7 +75,9 @@ def recorded_lift(name: str) -> Lift:
                     'ground_force', 'centre_of_pressure', 'free_moment', 'hand_force',
                     'box_position')
     }  # fmt: skip
-    names = {key: tuple(truth[key]) for key in ('coordinates', 'point_names', 'frame_names')}
+    names: dict[str, Any] = {
+        key: tuple(truth[key]) for key in ('coordinates', 'point_names', 'frame_names')
+    }
     motion = BodyMotion(skeleton='3d_40dof', **arrays, **names)
     return Lift(
         name, 'measured', float(truth['lift_start']), float(truth['lift_end']),
@@ -182,9 +184,10 @@ def random_task(
                 np.array([-TOE_OUT, TOE_OUT]),
             )  # fmt: skip
             depth, width, _ = plan.box_size
-            end = plan.end
+            end, mass = plan.end, plan.box_mass
+            assert mass is not None
             places = np.array([plan.start, (c * end[0], s * end[0], end[2])])
-            box = PlacedBox((plan.box_mass,) * 2, depth, width, places, np.array([0.0, turn]))
+            box = PlacedBox((mass, mass), depth, width, places, np.array([0.0, turn]))
             task = place_task(person, frame, box, (DURATION,) * 2, predictor.grid, name)
             return task, finder.starts(task, predictor.grid)
         except (HumanModelError, LiftPredictorError):
@@ -222,6 +225,7 @@ def random_lifts(
             continue
         solved += 1
         check = prediction.verification
+        assert check is not None
         violations += any(check.violation[name] > most for name, most in TOLERANCE.items())
         # Before margins for the time between the nodes, which the other answers have not.
         mine = min(run.solution.objective for run in prediction.optima if run.converged)

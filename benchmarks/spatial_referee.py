@@ -8,6 +8,7 @@ Jacobian, through CasADi.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -55,8 +56,8 @@ class _Call(ca.Callback):
     def get_sparsity_out(self, i: int) -> Any:
         return self.outputs[i]
 
-    def eval(self, arguments: list[Any]) -> list[Any]:
-        return self.function(*(np.asarray(a).ravel() for a in arguments))
+    def eval(self, arguments: Sequence[Any]) -> list[Any]:
+        return list(self.function(*(np.asarray(a).ravel() for a in arguments)))
 
 
 class Referee:
@@ -124,7 +125,7 @@ class Referee:
         both, grad_f, jac_g, hess_lag = self._calls
         x = ca.MX.sym('x', n)
         f, g = both(x)
-        options = {
+        options: dict[str, Any] = {
             'grad_f': grad_f, 'jac_g': jac_g, 'hess_lag': hess_lag, 'no_nlp_grad': True,
             'print_time': False, 'error_on_fail': False, 'calc_lam_p': False,
             'ipopt.print_level': 0, 'ipopt.sb': 'yes',
@@ -138,7 +139,8 @@ class Referee:
                 for name in ('bound', 'slack_bound', 'mult_bound')
             }
             options['ipopt.mu_init'] = predictor.options.warm_barrier
-        self._ipopt = ca.nlpsol('referee', 'ipopt', {'x': x, 'f': f, 'g': g}, options)
+        problem: dict[str, Any] = {'x': x, 'f': f, 'g': g}
+        self._ipopt = ca.nlpsol('referee', 'ipopt', problem, options)
 
     def solve(
         self, x0: Any, task: SpatialTask | None = None, before: Refereed | None = None
@@ -155,5 +157,5 @@ class Referee:
         result = self._ipopt(x0=np.clip(x0, p.lower, p.upper), **bounds)
         stats = self._ipopt.stats()
         objective = float(result['f']) if stats['success'] else float('nan')
-        x, *multipliers = (np.asarray(result[name]).ravel() for name in ('x', 'lam_x', 'lam_g'))
-        return Refereed(objective, int(stats['iter_count']), x, tuple(multipliers))
+        x, lam_x, lam_g = (np.asarray(result[name]).ravel() for name in ('x', 'lam_x', 'lam_g'))
+        return Refereed(objective, int(stats['iter_count']), x, (lam_x, lam_g))

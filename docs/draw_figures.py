@@ -12,6 +12,7 @@ import argparse
 import math
 import shutil
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -44,7 +45,7 @@ RESULTANT = 2500.0
 
 # Drawn on their own white card, so that they can be read on a light and on a dark page; the
 # same input gives the same file.
-STYLE = {
+STYLE: dict[Any, Any] = {
     'svg.hashsalt': 'lift monitor', 'svg.fonttype': 'path', 'font.size': 10,
     'axes.spines.top': False, 'axes.spines.right': False, 'axes.grid': True,
     'grid.alpha': 0.35, 'figure.facecolor': 'white', 'savefig.facecolor': 'white',
@@ -104,16 +105,16 @@ def results_of(bag: Path) -> Path:
     return run_offline(bag, RESULTS / bag.name)
 
 
-def messages(results: Path, topic: str) -> list:
+def messages(results: Path, topic: str) -> list[Any]:
     """Return all messages of a topic."""
     with BagReader(results) as bag:
         names = [name for name in bag.topics if name.endswith(f'/{topic}')]
         return [message for _, _, message in bag.messages(names)]
 
 
-def stamp(message: object) -> float:
+def stamp(message: Any) -> float:
     """Return the stamp of a message [s]."""
-    return message.header.stamp.sec + 1e-9 * message.header.stamp.nanosec
+    return float(message.header.stamp.sec + 1e-9 * message.header.stamp.nanosec)
 
 
 def angle_errors(name: str) -> dict[str, float]:

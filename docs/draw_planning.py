@@ -67,13 +67,13 @@ class Curve:
         def total(*names: str) -> np.ndarray:
             known = [name for name in names if name in motion.coordinates]
             values = np.sum([motion.coordinate(name) for name in known], axis=0)
-            return np.interp(share, own, np.broadcast_to(values, own.shape))
+            return np.asarray(np.interp(share, own, np.broadcast_to(values, own.shape)))
 
-        columns = [(total(*SPINE),) * 2]
+        columns: list[tuple[np.ndarray, ...]] = [(total(*SPINE),) * 2]
         for joint in JOINTS[1:]:
             columns.append(tuple(total(joint, f'{joint}_{side}') for side in 'rl'))
         columns.append((total(*TURN),) * 2)
-        return np.degrees(np.transpose(columns, (2, 0, 1)))
+        return np.asarray(np.degrees(np.transpose(columns, (2, 0, 1))))
 
     def distance(self, other: Curve) -> str:
         """RMSE of the joint angles to another lift, both sides together, as cells [deg]."""
@@ -143,12 +143,14 @@ def curves(bag: str) -> tuple[list[Curve], list[Curve]]:
     def plain(styles: tuple[str, str]) -> PlanTask:
         if in_space:
             return same_task_in_space(planner.predictor.spatial().task(lift, box), size, styles)
-        return same_task(build_task(planner.predictor.person, lift, box), size, styles)
+        person = planner.predictor.person
+        assert person is not None
+        return same_task(build_task(person, lift, box), size, styles)
 
     analyzer = MuscleAnalyzer()
     analyzer.configure(subject)
     index = _index(planner, predicted, lift, box)
-    found, again = [_curve(RECORDED, predicted, index, analyzer)], []
+    found, again = [_curve(RECORDED, predicted, index, analyzer)], list[Curve]()
     own = technique_of(index)
     other = LiftPlanner(LiftPredictor(PredictorOptions(dimension='3d')))
     for name, styles in PLANS.items():
@@ -170,7 +172,9 @@ def _index(
 ) -> float:
     """Stoop-Squat-Index of the first posture of a prediction."""
     if isinstance(predicted, PredictedLift2D):
-        task = build_task(planner.predictor.person, lift, box)
+        person = planner.predictor.person
+        assert person is not None
+        task = build_task(person, lift, box)
         first = predicted.optima[0].control[:1]
         return float(stoop_squat_index(first, task.person, task.parameters)[0])
     spatial = planner.predictor.spatial()
@@ -191,6 +195,7 @@ def _curve(
     analyzer: MuscleAnalyzer,
     effort: float | None = None,
 ) -> Curve:
+    assert prediction.lift is not None
     motion = prediction.lift.motion
     analysis = analyzer.analyze(motion, 'lift', 'predicted')
     good = analysis.spine_status == 0

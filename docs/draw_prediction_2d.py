@@ -39,6 +39,7 @@ from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.sagittal.comparison import COMPARED_JOINTS
 from lift_predictor.core.sagittal.parameters import JOINTS
 from lift_predictor.core.sagittal.starts import make_starts
+from lift_predictor.core.sagittal.task import LiftTask2D
 
 CHAIN: Final = ('toe_r', 'ankle_r', 'knee_r', 'hip_r', 'l5_s1', 'shoulder_r', 'elbow_r', 'hand_r')
 SNAPSHOTS: Final = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
@@ -105,8 +106,8 @@ def print_tables(known: Validation) -> None:
         measured = known.root.measured
         print(f'| {name} | {measured:.2f} N | {weight:.2f} N | {weight - measured:+.2f} N |')
     print('| | RMSE w/ | RMSE w/o | r w/ | r w/o |\n|---|---|---|---|---|')
-    both = [result.comparison for result in known.results.values()]
-    lines = [
+    both = [c for result in known.results.values() if (c := result.comparison) is not None]
+    lines: list[tuple[str, list[float], list[float] | None]] = [
         (f'{joint} [deg]', [c.joint_rmse[j] for c in both], [c.joint_pearson[j] for c in both])
         for j, joint in enumerate(COMPARED_JOINTS)
     ]
@@ -177,6 +178,7 @@ def snapshots(known: Validation) -> Figure:
         **{
             f'{name}: {result.weight:.0f} N': result.prediction.lift.motion
             for name, result in known.results.items()
+            if result.prediction.lift is not None
         },
     }
     figure = Figure(figsize=(7.6, 6.6))
@@ -228,6 +230,7 @@ def profiles(known: Validation) -> Figure:
     figure = Figure(figsize=(7.6, 8.2))
     grid = figure.subplots(4, 2, sharex=True).ravel()
     measured = maximum_task(known).measured
+    assert measured is not None
     share = 100.0 * measured.time / measured.time[-1]
     for j, joint in enumerate(COMPARED_JOINTS):
         grid[j].plot(share, np.degrees(measured.q[:, j]), color=GREY, label=RECORDED)
@@ -237,6 +240,7 @@ def profiles(known: Validation) -> Figure:
         axes.set_ylabel(f'{name} GRF [N]', fontsize=8)
         axes.set_xlabel('part of the lift [%]', fontsize=8)
     for (name, result), colour in zip(known.results.items(), (BLUE, ORANGE), strict=True):
+        assert result.prediction.lift is not None
         motion = result.prediction.lift.motion
         at = np.linspace(0.0, 100.0, len(motion))
         for j, joint in enumerate(JOINTS):
@@ -255,7 +259,7 @@ def profiles(known: Validation) -> Figure:
     return figure
 
 
-def maximum_task(known: Validation):
+def maximum_task(known: Validation) -> LiftTask2D:
     """Return the task of the man's lift, which holds the recorded angles."""
     predictor = LiftPredictor()
     predictor.configure(average_man())

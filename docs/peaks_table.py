@@ -120,9 +120,12 @@ def _posture(motion: Any, k: int) -> tuple[float, float, float]:
     trunk = point['c7'] - point['l5_s1']
     lean = math.degrees(math.atan2(math.hypot(trunk[0], trunk[1]), trunk[2]))
     reach = motion.box_position[k] - point['l5_s1']
-    moment = sum(
-        np.cross(point[f'hand_{side}'] - point['l5_s1'], motion.hand_force[k, j])
-        for j, side in enumerate('rl')
+    moment = np.sum(
+        [
+            np.cross(point[f'hand_{side}'] - point['l5_s1'], motion.hand_force[k, j])
+            for j, side in enumerate('rl')
+        ],
+        axis=0,
     )
     return lean, math.hypot(reach[0], reach[1]), float(moment[1])
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 import math
 from array import array
 from collections.abc import Sequence
+from typing import TypeAlias
 
 import numpy as np
 from lifting_interfaces.msg import AlarmEvent as AlarmEventMsg
@@ -33,7 +34,7 @@ from injury_monitor.core.validation import FloatArray
 from injury_monitor.core.work import Work
 from lifting_node.stamps import to_seconds, to_stamp
 
-Block = SpineLoad | JointTorques | MuscleAnalysis
+Block: TypeAlias = SpineLoad | JointTorques | MuscleAnalysis
 
 _BLOCK = ('header', 'lift_id', 'source', 'time_from_start', 'status')
 #: What the monitor looks at in the analyzer's messages.

@@ -157,13 +157,15 @@ class InjuryMonitorNode(PipelineNode):
         if source:
             self._collect(message.lift_id, lambda parts: parts.spine.update({source: series}))
         elif self._ready_for_samples(partial(self._on_spine_load, message)):
-            for row in zip(
+            for time, compression, shear, solved in zip(
                 series.time, series.compression, series.anterior_shear, series.solved, strict=True
             ):
                 self._announce(
                     self.monitor.update_spine_load(
-                        *(float(value) for value in row[:3]),
-                        bool(row[3]),
+                        float(time),
+                        float(compression),
+                        float(shear),
+                        bool(solved),
                         message.lift_id,
                         self.values['stored_data'],
                     )
@@ -295,7 +297,7 @@ class InjuryMonitorNode(PipelineNode):
     def _command(
         self, trigger: Trigger, request: Any, response: Any, duration: float = math.nan
     ) -> Any:
-        codes = {
+        codes: dict[type[InjuryMonitorError], Any] = {
             UnknownAlarmError: ShelveAlarm.Response.UNKNOWN_ALARM,
             AlarmCommandError: ShelveAlarm.Response.NOT_IN_THIS_STATE,
             ShelveDurationError: ShelveAlarm.Response.DURATION_REFUSED,

@@ -59,7 +59,7 @@ def box_from_msg(task: TaskMsg, mass: float) -> Box:
 
 
 def prediction_to_msg(
-    prediction: PredictedLift2D, lift: Lift | None, subject: Subject
+    prediction: PredictedLift2D | PredictedLift3D, lift: Lift | None, subject: Subject
 ) -> PredictedLiftMsg:
     """Return the message of a prediction; without a solution its arrays are empty.
 
@@ -126,7 +126,8 @@ def comparison_to_msg(
 ) -> LiftComparisonMsg:
     """Return the message of a comparison."""
     loads = comparison.measured
-    joints, torques = COMPARED_JOINTS, JOINTS
+    joints: tuple[str, ...] = COMPARED_JOINTS
+    torques: tuple[str, ...] = JOINTS
     if isinstance(comparison, SpatialComparison):
         joints, torques = comparison.joint_names, comparison.torque_names
     message = LiftComparisonMsg(

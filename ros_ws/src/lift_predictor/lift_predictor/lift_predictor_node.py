@@ -26,6 +26,7 @@ from lift_predictor.core.exceptions import CancelledError, LiftPredictorError
 from lift_predictor.core.options import PredictorOptions
 from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.sagittal.prediction import PredictedLift2D
+from lift_predictor.core.spatial.prediction import PredictedLift3D
 from lift_predictor.plan_action import PlanAction
 from lifting_node import qos
 from lifting_node.pipeline_node import PipelineNode
@@ -103,7 +104,7 @@ class LiftPredictorNode(PipelineNode):
             handle.publish_feedback(feedback)
             self._background.check()
 
-        def work() -> PredictedLift2D:
+        def work() -> PredictedLift2D | PredictedLift3D:
             predictor = self._background.predictor
             predictor.configure(subject)
             return predictor.predict_and_compare(lift, box, tell)[0]

@@ -186,7 +186,8 @@ def _run(options: argparse.Namespace) -> int:
 
 def _play(options: argparse.Namespace) -> int:
     from lifting_cli.transport.keyboard import space_bar_pauses
-    from lifting_cli.transport.player import PlayControl, PlayOptions, play
+    from lifting_cli.transport.play_options import PlayControl, PlayOptions
+    from lifting_cli.transport.player import play
 
     os.environ.update(discovery())
     control = PlayControl(paused=options.start_paused)

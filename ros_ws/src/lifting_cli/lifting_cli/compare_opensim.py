@@ -138,7 +138,7 @@ def _instants(options: CompareOptions, time: np.ndarray) -> np.ndarray:
 def table(result: Comparison) -> str:
     """Return the differences as text, one line a quantity and one an instant."""
     head = ('quantity', 'unit', 'count', 'ours', 'OpenSim', 'difference', '% of peak', 'rms', 'at')
-    lines = [head]
+    lines: list[tuple[str, ...]] = [head]
     for row in result.differences:
         lines.append(
             (
@@ -153,7 +153,7 @@ def table(result: Comparison) -> str:
                 row.where,
             )
         )
-    loads = [
+    loads: list[tuple[str, ...]] = [
         (
             'instant [s]', 'compression [N]', 'OpenSim', 'anterior shear [N]', 'OpenSim',
             'lateral shear [N]', 'OpenSim', 'cost', 'OpenSim',

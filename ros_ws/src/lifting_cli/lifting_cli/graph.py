@@ -81,7 +81,7 @@ class Graph:
         began = time.monotonic()
         deadline = began + TRANSITION_TIMEOUT
         patient = True
-        clients: dict[str, Client[Any, Any, Any]] = {
+        clients: dict[str, Client] = {
             process.name: self._node.create_client(
                 ChangeState, f'/{self._station}/{process.name}/change_state'
             )

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import TypeAlias
 
 import numpy as np
 from lifting_interfaces.msg import (
@@ -33,7 +34,7 @@ FOLLOWED: dict[str, type] = {
     'risk_assessment': RiskAssessment,
 }
 
-Message = (
+Message: TypeAlias = (
     Subject
     | Task
     | LiftEvent
@@ -142,6 +143,7 @@ class LiveState:
             case RiskAssessment():
                 self.lifts_assessed.add(message.lift_id)
                 return [_assessment(message)]
+        return []
 
     def _lift_event(self, message: LiftEvent) -> tuple[str, Kind]:
         source = 'box' if message.detected_from == LiftEvent.FROM_BOX else 'hands'

@@ -208,7 +208,12 @@ def run_online(
         stack.callback(executor.shutdown)
         # The processes end before this one's node does, whatever happens to that: after an
         # interruption rclpy can wait for ever in destroy_node.
-        stack.callback(faulthandler.dump_traceback_later, CLOSING, exit=True, file=sys.__stderr__)
+        stack.callback(
+            faulthandler.dump_traceback_later,
+            CLOSING,
+            exit=True,
+            file=sys.__stderr__ or sys.stderr,
+        )
         stack.callback(stop_all, [*helpers, *processes])
         stack.callback(deafness.begin)
         executor.add_node(node)
@@ -286,7 +291,7 @@ class _Session:
         self.state = LiveState(summary.start)
         self._view = LiveView(self.state, summary.duration, gauge_limits(summary))
         self._last = time.monotonic()
-        self._clients: dict[str, Client[Any, Any, Any]] = {}
+        self._clients: dict[str, Client] = {}
         # A server drops the answer to a client that it has not heard of yet: known from the start.
         self._client(Trigger, 'motion_tracker/flush')
         for topic, message_type in FOLLOWED.items():
@@ -309,7 +314,7 @@ class _Session:
                 raise SessionError(f'{name} did not appear within {timeout:g} s')
             self._executor.spin_once(timeout_sec=0.02)
 
-    def _client(self, service: type, name: str) -> Client[Any, Any, Any]:
+    def _client(self, service: type, name: str) -> Client:
         if name not in self._clients:
             self._clients[name] = self._node.create_client(service, name)
         return self._clients[name]

@@ -69,7 +69,7 @@ class Reader:
     def stamp(self) -> float:
         """Return a time [s]."""
         seconds, nanoseconds = _TIME.unpack_from(self._data, self.skip(4, 8))
-        return float(seconds) + nanoseconds / 1e9
+        return float(seconds + nanoseconds / 1e9)
 
     def string(self) -> tuple[str, list[int]]:
         """Return a text and the places of its length's and its own bytes.

@@ -80,7 +80,7 @@ class PipelineNode(LifecycleNode):
 
     def advertise(self, message_type: type, topic: str, qos: QoSProfile) -> LifecyclePublisher:
         """Create a publisher that is silent unless the node is active."""
-        publisher = self.create_lifecycle_publisher(message_type, topic, qos)
+        publisher: LifecyclePublisher = self.create_lifecycle_publisher(message_type, topic, qos)
         self._outputs.append(publisher)
         return publisher
 
@@ -93,9 +93,10 @@ class PipelineNode(LifecycleNode):
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Build the pipeline; a refused parameter or model file is a failure, not a crash."""
+        refused: tuple[type[Exception], ...] = (ValueError, OSError, *self.INPUT_ERRORS)
         try:
             self.build()
-        except (ValueError, OSError, *self.INPUT_ERRORS) as error:
+        except refused as error:
             self.get_logger().error(f'not configured: {error}')
             return TransitionCallbackReturn.FAILURE
         return TransitionCallbackReturn.SUCCESS

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from human_model.constants import GRAVITY
 from lifting_report.figures import curves, loads, stick_figures
 from lifting_report.figures.loads import LimitLine
 from lifting_report.html_parts import (
@@ -21,7 +22,6 @@ from lifting_report.html_parts import (
     table,
     text,
 )
-from lifting_report.lift_section import GRAVITY
 from lifting_report.model_limits import MODEL_LIMITS
 from lifting_report.page_style import CSS, SCRIPT
 from lifting_report.report_data import (

@@ -221,7 +221,7 @@ def _blocks(entry: LiftMessages, topic: str, convert: Any) -> Pair[Any]:
 def _torques(entry: LiftMessages) -> Pair[Any]:
     """Return the torques of both lifts by the same sagittal model."""
     comparison = entry.single.get('lift_comparison')
-    predicted = entry.single.get('predicted_lift')
+    predicted: Any = entry.single.get('predicted_lift')
     missing = _prediction_missing(predicted)
     measured = (
         Missing('no comparison with a predicted lift came')
@@ -282,41 +282,46 @@ def _quality(entry: LiftMessages) -> tuple[QualityRow, ...]:
             'markers from the tracked skeleton',
         ),
     ]  # fmt: skip
-    muscles = [entry.blocks.get(('muscle_analysis', s)) for s in (MEASURED, PREDICTED)]
-    spines = [entry.blocks.get(('spine_load', s)) for s in (MEASURED, PREDICTED)]
 
-    def both(messages: list[Any], field: str, scale: float, reduce: Any) -> list[float]:
-        return [
+    def both(topic: str, field: str, scale: float, reduce: Any) -> tuple[float, float]:
+        measured, predicted = (
             math.nan if message is None else scale * reduce(getattr(message, field))
-            for message in messages
-        ]
+            for message in (entry.blocks.get((topic, s)) for s in (MEASURED, PREDICTED))
+        )
+        return measured, predicted
 
     rows += [
         QualityRow(
-            'transfer, hands and feet', *both(muscles, 'transfer_position_error', 1e3,
-                                              curves.largest),
-            'mm', 'largest distance between the two skeletons',
+            'transfer, hands and feet',
+            *both('muscle_analysis', 'transfer_position_error', 1e3, curves.largest),
+            'mm',
+            'largest distance between the two skeletons',
         ),
         QualityRow(
-            'transfer, trunk and feet', *both(muscles, 'transfer_angle_error', 180.0 / math.pi,
-                                              curves.largest),
-            'deg', 'largest angle between the two skeletons',
+            'transfer, trunk and feet',
+            *both('muscle_analysis', 'transfer_angle_error', 180.0 / math.pi, curves.largest),
+            'deg',
+            'largest angle between the two skeletons',
         ),
         QualityRow(
             'L5-S1 moment, from above against from below',
-            *both(spines, 'moment_difference', 1.0, curves.root_mean_square),
-            'N m', 'rms over the lift; no reference is needed for it',
+            *both('spine_load', 'moment_difference', 1.0, curves.root_mean_square),
+            'N m',
+            'rms over the lift; no reference is needed for it',
         ),
         QualityRow(
-            'balance of the static optimisation', *both(muscles, 'primal_residual', 1.0,
-                                                        curves.largest),
-            'N m', 'largest residual over the lift',
+            'balance of the static optimisation',
+            *both('muscle_analysis', 'primal_residual', 1.0, curves.largest),
+            'N m',
+            'largest residual over the lift',
         ),
         QualityRow(
-            'largest reserve torque', *both(muscles, 'reserve', 1.0, curves.largest_size),
-            'N m', 'what no muscle could give',
+            'largest reserve torque',
+            *both('muscle_analysis', 'reserve', 1.0, curves.largest_size),
+            'N m',
+            'what no muscle could give',
         ),
-    ]  # fmt: skip
+    ]
     return tuple(rows)
 
 

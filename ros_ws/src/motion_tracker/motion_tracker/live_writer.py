@@ -55,7 +55,9 @@ class _Template:
         end = HEAD + reader.read_at(data[HEAD:], 0)[1]
         self._head, self._octets = data[:HEAD], bytearray(data[HEAD:end])
         self._stamp = np.frombuffer(self._octets, '<i4', 2)
-        self.view = reader.read_at(self._octets, 0)[0]
+        # NumPy views of the bytearray, which can be written to.
+        octets: Any = self._octets
+        self.view = reader.read_at(octets, 0)[0]
 
     def last(self, count: int) -> npt.NDArray[np.float64]:
         """Return the last doubles of the message, as an array that can be written to."""

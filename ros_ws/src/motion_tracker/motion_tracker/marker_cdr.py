@@ -80,9 +80,9 @@ def _layout(data: bytes) -> _Layout:
         for _ in range(count):
             reader.skip(1, 1)
             reader.skip(4, 4)
-            name, places = reader.string()
+            name, octets_of_name = reader.string()
             names.append(name)
-            fixed += places
+            fixed += octets_of_name
             begin = reader.skip(8, 24)
             numbers.append([(begin - HEAD) // 8 + axis for axis in range(3)])
     except CdrError as error:

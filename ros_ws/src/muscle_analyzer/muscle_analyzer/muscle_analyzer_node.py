@@ -36,7 +36,8 @@ from lifting_node.run import run_node
 from muscle_analyzer import conversions
 from muscle_analyzer.core.exceptions import MuscleAnalyzerError
 from muscle_analyzer.core.loads.analysis import MuscleAnalysis as Analysis
-from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer, MuscleAnalyzerOptions
+from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
+from muscle_analyzer.core.loads.options import MuscleAnalyzerOptions
 from muscle_analyzer.core.recruitment.static_optimization import StaticOptimizationOptions
 from muscle_analyzer.core.subject.muscle_strength import StrengthScaling
 from muscle_analyzer.core.subject.segment_masses import MassDistribution

@@ -30,6 +30,6 @@ def own_node(name: str, namespace: str = '') -> Iterator[tuple[Node, Executor]]:
             yield node, executor
         finally:
             executor.shutdown()
-            node.destroy_node()  # type: ignore[no-untyped-call]
+            node.destroy_node()
     finally:
         context.try_shutdown()

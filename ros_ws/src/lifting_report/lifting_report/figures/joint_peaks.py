@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+from operator import attrgetter
+
 import numpy as np
 from matplotlib.axes import Axes
 
@@ -37,13 +39,13 @@ def joint_peaks(pair: Pair[JointLoads], name: str) -> str:
     """Draw the peak compression and the peak shear of each joint, both lifts side by side."""
     present = pair.present()
     joints = next(iter(present.values())).joints
-    place = np.arange(len(joints))
+    place = np.arange(len(joints), dtype=np.float64)
     height = 0.8 / len(present)
     with figure_style():
         figure, panels = new_figure(0.9 + 0.42 * len(joints), 1, 2)
         for axes, title, values in (
-            (panels[0], 'peak compression', lambda loads: loads.peak_compression),
-            (panels[1], 'peak shear, all directions', lambda loads: loads.peak_shear),
+            (panels[0], 'peak compression', attrgetter('peak_compression')),
+            (panels[1], 'peak shear, all directions', attrgetter('peak_shear')),
         ):
             axes.set_title(title)
             for k, (source, loads) in enumerate(present.items()):
