@@ -16,7 +16,6 @@ import sys
 import time
 from pathlib import Path
 
-import compiled_functions
 import interfaces
 from clean_environment import clean_environment
 from stamps import Stamp, digest
@@ -175,14 +174,21 @@ def install_workspace() -> None:
     command.chmod(0o755)
 
 
-def drop_compiled_functions() -> None:
-    """Remove what numba compiled from other sources than the present ones."""
-    if compiled_functions.remove_numba_caches(SOURCES):
-        say('sources of compiled functions have changed: the old compilations are removed')
+def compiled_functions(runtime: str) -> Stamp:
+    """Return the stamp of the compiled functions, without its file if their cache is gone."""
+    sys.path.insert(0, str(SOURCES / 'human_model'))
+    from human_model.cache import cache_directory
+
+    cache = cache_directory()
+    sources = [*SOURCES.glob('*/*/**/*.py'), *SOURCES.glob('*/*/data/kernel/*')]
+    stamp = Stamp(STAMPS / 'compiled functions', digest(sources, runtime, str(cache)))
+    if not (cache / 'numba').is_dir():
+        stamp.path.unlink(missing_ok=True)
+    return stamp
 
 
 def compile_functions() -> None:
-    """Have every pipeline compile its functions, so that no node does it when it starts."""
+    """Compile the functions of every pipeline, so that no node compiles when it starts."""
     say('compiling the functions of the pipelines (about a minute, once)')
     run(VENV / 'bin' / 'python', '-m', 'lifting_cli.warm_up')
 
@@ -212,20 +218,17 @@ def set_up(dev: bool) -> None:
     place.write()
     runtime = digest(RUNTIME_LOCKS, version)
     names = [path.name for path in python_packages()]
-    numba = digest(compiled_functions.numba_sources(SOURCES), runtime)
-    programme = digest(compiled_functions.programme_sources(SOURCES), numba)
     steps = [
         ('runtime', runtime, install_runtime),
         ('interfaces', interface_digest(INTERFACES, runtime), build_interfaces),
         ('tf2_msgs', interface_digest(TF_MESSAGE, runtime), build_tf_message),
         ('workspace', digest([Path(__file__)], runtime, *names), install_workspace),
-        ('numba', numba, drop_compiled_functions),
     ]
     if dev:
         steps.append(('dev', digest([DEV_LOCK], runtime), install_dev))
     else:
         # Tests compile what they need; code that is being changed must not stop the set-up.
-        steps.append(('compiled functions', programme, compile_functions))
+        steps.append(('compiled functions', compiled_functions(runtime).value, compile_functions))
     for name, value, action in steps:
         stamp = Stamp(STAMPS / name, value)
         if not stamp.is_current():

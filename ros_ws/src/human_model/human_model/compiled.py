@@ -9,10 +9,10 @@ hold both to the same numbers. The small functions add into their first argument
 over bodies allocate nothing.
 """
 
-import numba
 import numpy as np
 
 from human_model import constants
+from human_model.compiled_cache import njit
 from human_model.tree import TreeArrays
 from human_model.typing import Array, IntArray
 
@@ -21,37 +21,37 @@ GRAVITY = constants.GRAVITY
 _PRISMATIC = 1
 
 
-@numba.njit(cache=True)
+@njit
 def _dot(a: Array, b: Array) -> float:
     return float(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
 
 
-@numba.njit(cache=True)
+@njit
 def _add(out: Array, a: Array, factor: float) -> None:
     for i in range(3):
         out[i] += factor * a[i]
 
 
-@numba.njit(cache=True)
+@njit
 def _add_cross(out: Array, a: Array, b: Array, factor: float) -> None:
     out[0] += factor * (a[1] * b[2] - a[2] * b[1])
     out[1] += factor * (a[2] * b[0] - a[0] * b[2])
     out[2] += factor * (a[0] * b[1] - a[1] * b[0])
 
 
-@numba.njit(cache=True)
+@njit
 def _add_turned(out: Array, matrix: Array, vector: Array) -> None:
     for i in range(3):
         out[i] += matrix[i, 0] * vector[0] + matrix[i, 1] * vector[1] + matrix[i, 2] * vector[2]
 
 
-@numba.njit(cache=True)
+@njit
 def _add_turned_back(out: Array, matrix: Array, vector: Array) -> None:
     for i in range(3):
         out[i] += matrix[0, i] * vector[0] + matrix[1, i] * vector[1] + matrix[2, i] * vector[2]
 
 
-@numba.njit(cache=True)
+@njit
 def _turn_about(out: Array, base: Array, a: Array, angle: float) -> None:
     """Write ``base exp(a angle)`` into out (Rodrigues), column by column."""
     c, s = np.cos(angle), np.sin(angle)
@@ -64,7 +64,7 @@ def _turn_about(out: Array, base: Array, a: Array, angle: float) -> None:
         out[i, 2] = c * z + along * a[2] + s * (x * a[1] - y * a[0])
 
 
-@numba.njit(cache=True)
+@njit
 def body_frames(tree: TreeArrays, q: Array) -> tuple[Array, Array, Array]:
     """World rotation (n_q, 3, 3), origin (n_q, 3) [m] and joint axis (n_q, 3) of all bodies."""
     n = q.shape[0]
@@ -87,7 +87,7 @@ def body_frames(tree: TreeArrays, q: Array) -> tuple[Array, Array, Array]:
     return rotation, origin, axis
 
 
-@numba.njit(cache=True)
+@njit
 def segment_frames(tree: TreeArrays, q: Array) -> tuple[Array, Array]:
     """World rotation (n_s, 3, 3) and origin (n_s, 3) [m] of all segments."""
     rotation, origin, _ = body_frames(tree, q)
@@ -102,7 +102,7 @@ def segment_frames(tree: TreeArrays, q: Array) -> tuple[Array, Array]:
     return segment_rotation, segment_origin
 
 
-@numba.njit(cache=True)
+@njit
 def point_positions(tree: TreeArrays, q: Array, segment: IntArray, local: Array) -> Array:
     """World positions (n, 3) [m] of points fixed to segments (n,) at local positions (n, 3)."""
     rotation, origin = segment_frames(tree, q)
@@ -113,7 +113,7 @@ def point_positions(tree: TreeArrays, q: Array, segment: IntArray, local: Array)
     return position
 
 
-@numba.njit(cache=True)
+@njit
 def points_and_jacobian(
     tree: TreeArrays, q: Array, segment: IntArray, local: Array
 ) -> tuple[Array, Array]:
@@ -137,7 +137,7 @@ def points_and_jacobian(
     return position, jacobian
 
 
-@numba.njit(cache=True)
+@njit
 def body_motion(
     tree: TreeArrays, q: Array, qd: Array, qdd: Array
 ) -> tuple[Array, Array, Array, Array, Array, Array, Array]:
@@ -176,7 +176,7 @@ def body_motion(
     return rotation, origin, axis, omega, alpha, velocity, acceleration
 
 
-@numba.njit(cache=True)
+@njit
 def newton_euler(
     tree: TreeArrays, q: Array, qd: Array, qdd: Array, wrench: Array, gravity: float
 ) -> Array:

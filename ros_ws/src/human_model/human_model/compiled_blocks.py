@@ -2,16 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compiled kinematics of a block of instants: one call for a live sample or for a whole lift."""
 
-import numba
 import numpy as np
 
 from human_model.compiled import body_motion, segment_frames
+from human_model.compiled_cache import njit
 from human_model.compiled_quaternions import quaternions
 from human_model.tree import TreeArrays
 from human_model.typing import Array, IntArray
 
 
-@numba.njit(cache=True)
+@njit
 def points_and_frames(
     tree: TreeArrays, q: Array, segment: IntArray, local: Array, frame_segment: IntArray
 ) -> tuple[Array, Array]:
@@ -37,7 +37,7 @@ def points_and_frames(
     return points, frames
 
 
-@numba.njit(cache=True)
+@njit
 def outer_force(tree: TreeArrays, q: Array, qd: Array, qdd: Array, gravity: float) -> Array:
     """Sum of the outer forces (n, 3) [N] that make a motion (n, n_q), world axes.
 

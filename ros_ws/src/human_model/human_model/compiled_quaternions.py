@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compiled conversion of rotation matrices, for code that runs at 100 Hz."""
 
-import numba
 import numpy as np
 
+from human_model.compiled_cache import njit
 from human_model.typing import Array
 
 
-@numba.njit(cache=True)
+@njit
 def quaternions(rotation: Array) -> Array:
     """Quaternions (n, 4) xyzw with w >= 0 of rotation matrices (n, 3, 3).
 

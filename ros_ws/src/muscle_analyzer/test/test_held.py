@@ -89,7 +89,7 @@ def test_a_second_process_does_not_compile(tmp_path: Path) -> None:
             capture_output=True,
             text=True,
             timeout=120.0,
-            env={**os.environ, 'NUMBA_CACHE_DIR': str(tmp_path)},
+            env={**os.environ, 'LIFT_CACHE': str(tmp_path)},
         ).stdout.strip()
         for _ in range(2)
     ]

@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compiled steps of the causal filters, and rows between those of a stream."""
 
-import numba
 import numpy as np
 
+from human_model.compiled_cache import njit
 from human_model.typing import Array
 
 
-@numba.njit(cache=True)
+@njit
 def run(
     a: Array, b: Array, d: Array, scale: Array, state: Array, samples: Array, out: Array
 ) -> int:
@@ -38,7 +38,7 @@ def run(
     return -1
 
 
-@numba.njit(cache=True)
+@njit
 def blended(rows: Array, after: int, share: float) -> Array:
     """Row (channels,) at the share of the way from the row before ``after`` to that."""
     row = np.empty(rows.shape[1])

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compiled estimate of the hand forces, the same for a live sample and for a whole lift."""
 
-import numba
 import numpy as np
 
+from human_model.compiled_cache import njit
 from human_model.typing import Array
 from motion_tracker.core.force_plates import STANDARD_GRAVITY
 
@@ -12,14 +12,14 @@ from motion_tracker.core.force_plates import STANDARD_GRAVITY
 _NO_SPAN = 1e-4
 
 
-@numba.njit(cache=True)
+@njit
 def smooth_step(x: float) -> float:
     """0 below 0, 1 above 1, cubic with level ends in between."""
     s = min(max(x, 0.0), 1.0)
     return s * s * (3.0 - 2.0 * s)
 
 
-@numba.njit(cache=True)
+@njit
 def split(hands: Array, box: Array) -> float:
     """Share of the right hand: 1 where the box is at the right hand, 0 at the left, half unknown.
 
@@ -38,7 +38,7 @@ def split(hands: Array, box: Array) -> float:
     return float(min(max(along / length, 0.0), 1.0))
 
 
-@numba.njit(cache=True)
+@njit
 def gate(hands: Array, box: Array, reach: float, fade: float) -> float:
     """1 while both hands (2, 3) [m] are at the box, 0 while one is well away from it."""
     distance = 0.0
@@ -48,7 +48,7 @@ def gate(hands: Array, box: Array, reach: float, fade: float) -> float:
     return 1.0 - smooth_step((distance - reach) / fade)
 
 
-@numba.njit(cache=True)
+@njit
 def hand_forces(
     mass: float,
     missing: Array,

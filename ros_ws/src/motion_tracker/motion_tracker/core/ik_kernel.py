@@ -13,10 +13,10 @@ the bounds and accepted only if the objective falls. Everything is summed in a f
 equal input gives equal bits.
 """
 
-import numba
 import numpy as np
 
 from human_model.compiled import body_frames
+from human_model.compiled_cache import njit
 from human_model.tree import TreeArrays
 from human_model.typing import Array, IntArray
 
@@ -24,7 +24,7 @@ _DAMPING_START = 1e-9
 _DAMPING_MAX = 1e6
 
 
-@numba.njit(cache=True)
+@njit
 def _positions(rotation: Array, origin: Array, body: IntArray, local: Array) -> Array:
     out = np.empty((body.shape[0], 3))
     for i in range(body.shape[0]):
@@ -39,7 +39,7 @@ def _positions(rotation: Array, origin: Array, body: IntArray, local: Array) -> 
     return out
 
 
-@numba.njit(cache=True)
+@njit
 def _objective(
     position: Array,
     target: Array,
@@ -64,7 +64,7 @@ def _objective(
     return total
 
 
-@numba.njit(cache=True)
+@njit
 def _normal_equations(
     tree: TreeArrays,
     origin: Array,
@@ -114,7 +114,7 @@ def _normal_equations(
                 row[path[b]] += w * (cx[b] * x + cy[b] * y + cz[b] * z)
 
 
-@numba.njit(cache=True)
+@njit
 def _solve_free(
     hessian: Array, gradient: Array, free: IntArray, damping: float, step: Array
 ) -> bool:
@@ -159,7 +159,7 @@ def _solve_free(
     return True
 
 
-@numba.njit(cache=True)
+@njit
 def _bounded_step(
     hessian: Array,
     gradient: Array,
@@ -201,7 +201,7 @@ def _bounded_step(
     return True
 
 
-@numba.njit(cache=True)
+@njit
 def _add_pairs(hessian: Array, pair: IntArray, share: Array, pair_weight: Array) -> None:
     """Add half the Hessian of the terms that tie two coordinates."""
     for k in range(pair.shape[0]):
@@ -211,7 +211,7 @@ def _add_pairs(hessian: Array, pair: IntArray, share: Array, pair_weight: Array)
         hessian[max(a, b), min(a, b)] -= pair_weight[k] * s * (1.0 - s)
 
 
-@numba.njit(cache=True)
+@njit
 def observed_curvature(
     tree: TreeArrays,
     q: Array,
@@ -242,7 +242,7 @@ def observed_curvature(
     return 1.0 / np.diag(np.linalg.inv(hessian))
 
 
-@numba.njit(cache=True)
+@njit
 def marked(position: Array, weight: Array) -> tuple[Array, Array]:
     """Measured positions (n, 3) with zeros, and weights (n,) with zeros, where not seen."""
     target, trust = np.zeros_like(position), np.zeros_like(weight)
@@ -253,7 +253,7 @@ def marked(position: Array, weight: Array) -> tuple[Array, Array]:
     return target, trust
 
 
-@numba.njit(cache=True)
+@njit
 def misfit(position: Array, target: Array, weight: Array) -> tuple[Array, float, float, int]:
     """Distances (n,) of the markers, their root mean square and maximum [m], and their number.
 
@@ -278,7 +278,7 @@ def misfit(position: Array, target: Array, weight: Array) -> tuple[Array, float,
     return distance, np.sqrt(total / used), largest, used
 
 
-@numba.njit(cache=True)
+@njit
 def fit(
     tree: TreeArrays,
     start: Array,

@@ -5,10 +5,10 @@
 from collections import Counter
 from collections.abc import Iterable, Sequence
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
+from human_model.compiled_cache import njit
 from human_model.typing import Array
 from motion_tracker.core.exceptions import TrackerError
 
@@ -86,7 +86,7 @@ class MarkerFrames:
         return unknown
 
 
-@numba.njit(cache=True)
+@njit
 def _largest(positions: Array) -> float:
     """Largest finite size of a coordinate."""
     largest = 0.0
@@ -98,7 +98,7 @@ def _largest(positions: Array) -> float:
     return largest
 
 
-@numba.njit(cache=True)
+@njit
 def _scattered(positions: Array, rows: IntArray, places: IntArray, n: int) -> Array:
     """Positions (n, 3) whose ``rows`` are those at ``places``, the others NaN."""
     target = np.full((n, 3), np.nan)

@@ -4,9 +4,9 @@
 
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 
+from human_model.compiled_cache import njit
 from human_model.typing import Array
 from motion_tracker.core.exceptions import ForcePlateError
 from motion_tracker.core.force_plates import STANDARD_GRAVITY
@@ -139,7 +139,7 @@ class MassWatch:
         return self.check if before is None or before.ok is not self.check.ok else None
 
 
-@numba.njit(cache=True)
+@njit
 def _steadiness(rows: Array) -> tuple[float, float, float]:
     """Mean and standard deviation of the first column (n, 2), and mean of the second."""
     force, need, square = 0.0, 0.0, 0.0

@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compiled search for the instant at which a constant turns into a rise."""
 
-import numba
 import numpy as np
 
+from human_model.compiled_cache import njit
 from human_model.typing import Array
 
 
-@numba.njit(cache=True)
+@njit
 def onset(time: Array, height: Array, instants: Array, smooth: bool) -> tuple[float, float, float]:
     """Sum of squares [m^2], instant [s] and level [m] of the best onset of one shape.
 

@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compiled reaction of the ground on feet, the same for a live sample and for a whole lift."""
 
-import numba
 import numpy as np
 
+from human_model.compiled_cache import njit
 from human_model.typing import Array, BoolArray
 
 
-@numba.njit(cache=True)
+@njit
 def _foot(
     force: Array,
     moment: Array,
@@ -44,7 +44,7 @@ def _foot(
     return True
 
 
-@numba.njit(cache=True)
+@njit
 def reaction(
     force: Array, moment: Array, rotation: Array, origin: Array, surface: float, threshold: float
 ) -> tuple[Array, Array, Array, BoolArray]:
@@ -70,7 +70,7 @@ def reaction(
     return total, centre_of_pressure, free_moment, loaded
 
 
-@numba.njit(cache=True)
+@njit
 def feet(
     wrench: Array, rotation: Array, origin: Array, surface: Array, threshold: float
 ) -> tuple[Array, Array, Array]:

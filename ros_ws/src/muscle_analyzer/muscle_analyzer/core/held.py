@@ -9,10 +9,12 @@ with them.  A held tuple is turned once, and handed over as one pointer.
 
 from __future__ import annotations
 
-from typing import Any, Generic, TypeVar, cast
+from typing import Any, Generic, TypeVar
 
-from numba import njit, types
+from numba import types
 from numba.experimental import structref
+
+from human_model.compiled_cache import njit
 
 _Tuple = TypeVar('_Tuple', bound=tuple[Any, ...])
 
@@ -37,12 +39,12 @@ class Held(structref.StructRefProxy, Generic[_Tuple]):
 structref.define_proxy(Held, _HeldType, ['content'])  # type: ignore[no-untyped-call]
 
 
-@njit(cache=True)
-def _hold(content):  # type: ignore[no-untyped-def]
+@njit
+def _hold(content: _Tuple) -> Held[_Tuple]:
     # Not `Held(content)` in Python: numba would compile that anew in every process.
     return Held(content)  # type: ignore[no-untyped-call]
 
 
 def hold(content: _Tuple) -> Held[_Tuple]:
     """Hold a (named) tuple of arrays, numbers and such tuples."""
-    return cast(Held[_Tuple], _hold(content))
+    return _hold(content)

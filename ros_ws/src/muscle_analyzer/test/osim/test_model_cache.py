@@ -12,7 +12,7 @@ import pytest
 
 from muscle_analyzer.core.exceptions import ModelCacheError, OsimFormatError
 from muscle_analyzer.core.osim import model_cache
-from muscle_analyzer.core.osim.model_cache import cache_directory, load_model
+from muscle_analyzer.core.osim.model_cache import load_model
 from muscle_analyzer.core.osim.model_codec import decode, encode
 from muscle_analyzer.core.osim.reader import read_osim
 
@@ -115,11 +115,3 @@ def test_processes_that_build_one_entry_do_not_meet(write_model, tmp_path):
     ]
     assert [float(run.communicate(timeout=120)[0]) for run in runs] == [3.5] * 3
     assert len(list((tmp_path / 'models').iterdir())) == 1
-
-
-def test_directory_follows_the_environment(monkeypatch, tmp_path):
-    monkeypatch.setenv('LIFT_CACHE', str(tmp_path / 'own'))
-    assert cache_directory() == tmp_path / 'own' / 'models'
-    monkeypatch.delenv('LIFT_CACHE')
-    monkeypatch.setenv('XDG_CACHE_HOME', str(tmp_path / 'xdg'))
-    assert cache_directory() == tmp_path / 'xdg' / 'lift_monitor' / 'models'

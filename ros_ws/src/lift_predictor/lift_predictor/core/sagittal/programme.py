@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,17 +21,6 @@ if TYPE_CHECKING:
     from lift_predictor.core.solvers.node_function import NodeFunction
 
 
-SOURCES: Final = (
-    '../parameter_vector.py',
-    'grid.py',
-    'kernels.py',
-    'model.py',
-    'node_functions.py',
-    'parameters.py',
-)
-"""Modules that define the node functions."""
-
-
 def sagittal_library() -> NodeLibrary:
     """Load the compiled functions, or compile them."""
 
@@ -41,8 +30,7 @@ def sagittal_library() -> NodeLibrary:
 
         return kernel_functions()
 
-    here = Path(__file__).parent
-    return load_library('sagittal', [here / name for name in SOURCES], make)
+    return load_library('sagittal', [Path(__file__).with_name('kernels.py')], make)
 
 
 def sagittal_groups(grid: Grid) -> list[Group]:

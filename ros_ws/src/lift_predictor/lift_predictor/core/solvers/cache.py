@@ -2,9 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compiled functions in a cache on disk, once per machine.
 
-The cache is `$LIFT_CACHE`, else `$XDG_CACHE_HOME/lift_monitor`, else `~/.cache/lift_monitor`. A
-file's name carries a hash of everything that goes into it. Two processes that build at once wait
-for each other (file lock); a library appears under its name only when it is complete.
+A file's name holds a hash of everything that decides its content. Two processes that build at once
+wait for each other (file lock); a library appears under its name only when it is complete.
 """
 
 from __future__ import annotations
@@ -17,22 +16,16 @@ import shutil
 import subprocess
 import tempfile
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Final
 
+from human_model.cache import discard_unused, source_hash
+
 COMPILE_TIMEOUT: Final = 300.0
 FROM_CACHE: Final = 'compiled functions from the cache'
-
-
-def cache_directory() -> Path:
-    """Directory of the compiled libraries."""
-    own = os.environ.get('LIFT_CACHE')
-    if own:
-        return Path(own)
-    base = os.environ.get('XDG_CACHE_HOME')
-    return (Path(base) if base else Path.home() / '.cache') / 'lift_monitor'
 
 
 def find_compiler() -> str | None:
@@ -45,14 +38,21 @@ def find_compiler() -> str | None:
     return None
 
 
-def content_hash(files: Iterable[Path], facts: object, compiler: str) -> str:
-    """Hash of everything that decides what a compiled library holds."""
-    digest = hashlib.sha256()
-    for path in files:
-        digest.update(path.read_bytes())
+def content_hash(sources: Iterable[Path], facts: object, compiler: str) -> str:
+    """Return the hash of everything that decides the content of a compiled library.
+
+    Parameters
+    ----------
+    sources : iterable of Path
+        Modules that generate the library; the modules that they import are included.
+    facts : object
+        Everything else, with a `repr` that depends on the value only.
+    compiler : str
+        Path of the compiler.
+    """
     machine = platform.machine(), compiler_version(compiler), version('casadi')
-    digest.update(repr((facts, machine)).encode())
-    return digest.hexdigest()[:24]
+    content = repr((source_hash(*sources), facts, machine))
+    return hashlib.sha256(content.encode()).hexdigest()[:24]
 
 
 @cache
@@ -76,15 +76,26 @@ def processor_features() -> str:
 
 
 def built_once(library: Path, build: Callable[[Path, Path], None]) -> bool:
-    """Put a library into the cache; False if another process has just done so.
+    """Put a library into the cache unless it is there; return whether this call built it.
 
     Parameters
     ----------
     library : Path
-        Where it belongs.
+        Its place.
     build : callable
-        Makes it: gets an empty folder to work in and the file to write.
+        Builds it, given an empty folder for its work and the file to write.
+
+    Raises
+    ------
+    OSError, subprocess.SubprocessError
+        If the cache cannot be written or the compiler fails.
     """
+    library.parent.mkdir(parents=True, exist_ok=True)
+    if library.exists():
+        with suppress(OSError):  # a cache of another user
+            library.touch()
+        return False
+    discard_unused(path for path in library.parent.iterdir() if path.is_file())
     with library.with_suffix('.lock').open('w') as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         if library.exists():

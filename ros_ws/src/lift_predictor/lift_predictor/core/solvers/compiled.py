@@ -16,19 +16,11 @@ from typing import Any, Final
 
 import casadi as ca
 
+from human_model.cache import cache_directory
 from lift_predictor.core.sagittal.grid import Grid
 from lift_predictor.core.sagittal.nlp import programme_functions
 from lift_predictor.core.solvers import cache
 
-SOURCES: Final = (
-    'bspline.py',
-    'parameter_vector.py',
-    'sagittal/grid.py',
-    'sagittal/model.py',
-    'sagittal/nlp.py',
-    'sagittal/node_functions.py',
-    'sagittal/parameters.py',
-)
 FLAGS: Final = ('-O1', '-fPIC', '-shared')
 """With -O2 the compiler takes twice as long for functions that are no faster."""
 
@@ -70,11 +62,9 @@ def build_programme(grid: Grid) -> Programme:
         return _virtual_machine(grid, start, 'no C compiler was found')
     name = f'lift_{grid.n_control}_{grid.n_nodes}_{content_hash(grid, compiler)}'
     try:
-        directory = cache.cache_directory()
-        directory.mkdir(parents=True, exist_ok=True)
-        library = directory / f'{name}.so'
+        library = cache_directory() / f'{name}.so'
         how = cache.FROM_CACHE
-        if not library.exists() and cache.built_once(
+        if cache.built_once(
             library, lambda scratch, built: _compile(grid, compiler, scratch, built)
         ):
             how = f'functions compiled with {compiler}'
@@ -86,9 +76,8 @@ def build_programme(grid: Grid) -> Programme:
 
 
 def content_hash(grid: Grid, compiler: str) -> str:
-    """Hash of everything that decides what a compiled library holds."""
-    modules = [Path(__file__).parents[1] / name for name in SOURCES]
-    return cache.content_hash(modules, (grid, FLAGS), compiler)
+    """Return the hash of everything that decides the content of a compiled library."""
+    return cache.content_hash([Path(__file__)], (grid, FLAGS), compiler)
 
 
 def _compile(grid: Grid, compiler: str, scratch: Path, built: Path) -> None:

@@ -17,6 +17,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from human_model.cache import cache_directory
 from lift_predictor.core.solvers import cache
 
 if TYPE_CHECKING:
@@ -31,7 +32,6 @@ KERNEL: Final = (
     'lanes.h', 'assembly.c', 'condense.c', 'solver.c', 'measures.c', 'steps.c',
     'interior_point.c',
 )  # fmt: skip
-GENERATORS: Final = ('node_function.py', 'emit.py')
 
 
 @dataclass(frozen=True)
@@ -89,9 +89,10 @@ def load_library(
     Parameters
     ----------
     name : str
-        What the file is called, before its hash.
+        Name of the file, before its hash.
     sources : sequence of Path
-        Modules that define the functions: the library is made anew when one changes.
+        Modules that define the functions: the library is built again when one of them, or a
+        module that they import, changes.
     make : callable
         Builds the functions; called only if they are not in the cache.
     """
@@ -100,13 +101,9 @@ def load_library(
     if compiler is None:
         return _virtual(make, start, 'no C compiler was found')
     try:
-        directory = cache.cache_directory()
-        directory.mkdir(parents=True, exist_ok=True)
-        path = directory / f'{name}_{library_hash(sources, compiler)}.so'
+        path = cache_directory() / f'{name}_{library_hash(sources, compiler)}.so'
         how = cache.FROM_CACHE
-        if not path.exists() and cache.built_once(
-            path, lambda scratch, built: _compile(make, compiler, scratch, built)
-        ):
+        if cache.built_once(path, lambda scratch, built: _compile(make, compiler, scratch, built)):
             how = f'functions compiled with {compiler}'
         library = ctypes.CDLL(str(path))
     except (OSError, subprocess.SubprocessError) as error:
@@ -124,15 +121,15 @@ def load_library(
 
 
 def library_hash(sources: Sequence[Path], compiler: str) -> str:
-    """Hash of everything that goes into a library: functions, kernel, compiler, processor."""
-    here = Path(__file__).parent
-    own = [*(here / name for name in GENERATORS), *(_kernel() / name for name in KERNEL)]
-    facts = (FLAGS, VECTOR_LIBM, cache.processor_features())
-    return cache.content_hash([*sources, *own], facts, compiler)
+    """Return the hash of a library: functions, kernel, compiler and processor."""
+    facts = (_kernel(), FLAGS, VECTOR_LIBM, cache.processor_features())
+    return cache.content_hash([*sources, Path(__file__).with_name('emit.py')], facts, compiler)
 
 
-def _kernel() -> Path:
-    return Path(str(files('lift_predictor') / 'data' / 'kernel'))
+def _kernel() -> list[str]:
+    """Return the C files of the kernel."""
+    folder = files('lift_predictor') / 'data' / 'kernel'
+    return [(folder / name).read_text(encoding='utf-8') for name in KERNEL]
 
 
 def _compile(
@@ -142,7 +139,7 @@ def _compile(
     from lift_predictor.core.solvers.emit import library_source
 
     generated = library_source([function.derived() for function in make()])
-    parts = [(_kernel() / name).read_text(encoding='utf-8') for name in KERNEL]
+    parts = _kernel()
     source = scratch / 'library.c'
     source.write_text('\n'.join((parts[0], generated, *parts[1:])), encoding='utf-8')
     command = [compiler, *FLAGS, str(source), '-o', str(built)]

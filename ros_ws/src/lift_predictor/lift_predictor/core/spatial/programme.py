@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -27,23 +27,6 @@ if TYPE_CHECKING:
     from lift_predictor.core.solvers.node_function import NodeFunction
 
 
-SOURCES: Final = (
-    'parameter_vector.py',
-    'spatial/body.py',
-    'spatial/dynamics.py',
-    'spatial/grid.py',
-    'spatial/kernels.py',
-    'spatial/parameters.py',
-    'spatial/rotations.py',
-    'spatial/stance.py',
-    'spatial/stance_motion.py',
-    'sagittal/model.py',
-    'solvers/straight_line.py',
-    'solvers/sweeps.py',
-)
-"""Modules that define the node functions."""
-
-
 def spatial_library() -> NodeLibrary:
     """Load the compiled functions, or compile them (half a minute)."""
 
@@ -53,8 +36,7 @@ def spatial_library() -> NodeLibrary:
 
         return kernel_functions()
 
-    core = Path(__file__).parents[1]
-    return load_library('spatial', [core / name for name in SOURCES], make)
+    return load_library('spatial', [Path(__file__).with_name('kernels.py')], make)
 
 
 def spatial_groups(grid: SpatialGrid, technique: bool = False) -> list[Group]:

@@ -12,8 +12,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from human_model.compiled_cache import njit
 from human_model.typing import Array, BoolArray, IntArray
 from muscle_analyzer.core.held import Held
 from muscle_analyzer.core.loads.disc_frame import DEGREE
@@ -118,17 +118,17 @@ class SolvedArrays(NamedTuple):
     missed: BoolArray
 
 
-@njit(cache=True)
+@njit
 def _to_opensim(vector: Array, out: Array) -> None:
     out[0], out[1], out[2] = vector[0], vector[2], -vector[1]
 
 
-@njit(cache=True)
+@njit
 def _from_opensim(vector: Array, out: Array) -> None:
     out[0], out[1], out[2] = vector[0], -vector[2], vector[1]
 
 
-@njit(cache=True)
+@njit
 def outside_wrenches(held: Held[Places], forces: OutsideForces) -> Loaded:
     """Give the wrenches of ground and box on the bodies.
 
@@ -164,7 +164,7 @@ def outside_wrenches(held: Held[Places], forces: OutsideForces) -> Loaded:
     return out
 
 
-@njit(cache=True)
+@njit
 def _largest(values: Array, index: IntArray) -> float:
     """Give the largest of some values; NaN if one is."""
     out = float(values[index[0]])
@@ -175,7 +175,7 @@ def _largest(values: Array, index: IntArray) -> float:
     return out
 
 
-@njit(cache=True)
+@njit
 def _empty_arrays(n: int, position: Array, orientation: Array) -> SolvedArrays:
     """Give room for n frames, the poses of the disc being known."""
     return SolvedArrays(
@@ -197,7 +197,7 @@ def _empty_arrays(n: int, position: Array, orientation: Array) -> SolvedArrays:
     )
 
 
-@njit(cache=True)
+@njit
 def solved_arrays(
     held: Held[Places],
     disc_pose: Array,

@@ -35,11 +35,10 @@ from importlib.resources import files
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from human_model.compiled_cache import kernel, njit
 from human_model.typing import Array
 from muscle_analyzer.core.exceptions import InputArrayError, OptionError
-from muscle_analyzer.core.kernel import kernel
 
 #: OpenSim's body axes (forward, up, right) as columns forward, left, up.
 FORWARD_LEFT_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
@@ -145,7 +144,7 @@ def disc_setting(option: DiscOption) -> DiscSetting:
     return DiscSetting(False, math.radians(disc_parameters(option)['forward_tilt']), regression)
 
 
-@njit(cache=True)
+@njit
 def _sacral_angle(regression: Array, t: float, k: float) -> float:
     constant, b0, bt, bk, btk, btt, bkk = regression
     beta = b0 + bt * t + bk * k + btk * t * k + btt * t * t + bkk * k * k
@@ -167,7 +166,7 @@ def sacral_angle(trunk_flexion: float, knee_angle: float) -> float:
     return angle
 
 
-@njit(cache=True)
+@njit
 def leant_forward(frame: Array, angle: float) -> Array:
     """Return a frame (3, 3), columns forward, left, up, leant forward about its left axis, rad."""
     leant = frame.copy()

@@ -5,12 +5,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from human_model.compiled_cache import njit
 from human_model.typing import Array
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def world_poses(poses: Array) -> tuple[Array, Array]:
     """Give the places (n, 3) [m] and orientations (n, 4) of a frame in the laboratory.
 

@@ -25,9 +25,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from human_model.compiled_cache import kernel
 from human_model.typing import Array, IntArray
 from muscle_analyzer.core.exceptions import OptionError
-from muscle_analyzer.core.kernel import kernel
 from muscle_analyzer.core.loads.disc_frame import (
     FORWARD_LEFT_UP,
     DiscOption,

@@ -9,15 +9,13 @@ after frame without a step back into Python.  Everything is in OpenSim's axes.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TypeVar, cast
+from typing import Final
 
 import numpy as np
-from numba import njit
 
+from human_model.compiled_cache import kernel, njit
 from human_model.typing import Array
 from muscle_analyzer.core.held import Held
-from muscle_analyzer.core.kernel import kernel
 from muscle_analyzer.core.loads.disc_frame import turn_disc
 from muscle_analyzer.core.loads.joint_loads import joint_loads
 from muscle_analyzer.core.loads.sample_data import FrameLoads, FrameModel, FrameRoom
@@ -34,16 +32,12 @@ from muscle_analyzer.core.recruitment.muscle_recruitment import (
     share_torque,
 )
 
-_Function = TypeVar('_Function', bound=Callable[..., object])
-
 #: Steps of `solve_frames`.
 WHOLE, ASK, ANSWER = 0, 1, 2
 
 
-def _inner(function: _Function) -> _Function:
-    """Compile a function that only compiled ones call: without a way in from Python."""
-    compiled = njit(cache=True, error_model='numpy', no_cpython_wrapper=True)  # type: ignore[call-overload]
-    return cast(_Function, compiled(function))
+_inner: Final = njit(error_model='numpy', no_cpython_wrapper=True)
+"""Compile a function that only compiled functions call: without an entry from Python."""
 
 
 @kernel
@@ -189,7 +183,7 @@ def _optimize(actuators: Actuators, room: FrameRoom, past: Array, out: FrameLoad
     remember(past, multiplier, converged)
 
 
-@njit(cache=True, error_model='numpy', nogil=True)
+@njit(error_model='numpy', nogil=True)
 def solve_frames(
     held: Held[tuple[FrameModel, FrameRoom]],
     q: Array,

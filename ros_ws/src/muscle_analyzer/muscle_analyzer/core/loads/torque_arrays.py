@@ -7,8 +7,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from human_model.compiled_cache import njit
 from human_model.typing import Array, BoolArray, IntArray
 from muscle_analyzer.core.held import Held
 
@@ -42,13 +42,13 @@ class TorqueTable(NamedTuple):
     speed_factor: Array
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def _peak(x: float, centre: float, width: float) -> float:
     u = (x - centre) / width
     return 4.0 / (2.0 + float(np.exp(u)) + float(np.exp(-u)))
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def _strength(table: TorqueTable, side: int, j: int, angle: float, speed: float) -> float:
     """Give the strength of a joint [N m]; `human_model.strength.surface` in numbers."""
     c = table.coefficients[side, j]
@@ -58,7 +58,7 @@ def _strength(table: TorqueTable, side: int, j: int, angle: float, speed: float)
     return float(table.magnitude[side, j] * sum_)
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def _axis(quaternion: Array, number: int) -> tuple[float, float, float]:
     """Give an axis of a frame, in the world, from the frame's quaternion xyzw."""
     q = quaternion
@@ -71,7 +71,7 @@ def _axis(quaternion: Array, number: int) -> tuple[float, float, float]:
     return 2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def torques_and_limits(
     held: Held[TorqueTable],
     position: Array,

@@ -11,11 +11,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from human_model.compiled_cache import kernel, njit
 from human_model.typing import Array
-from muscle_analyzer.core.kernel import kernel
 from muscle_analyzer.core.multibody.kinematics import BodyState, cross3
 from muscle_analyzer.core.multibody.model import Tree
 
@@ -39,7 +38,7 @@ class InverseDynamics(NamedTuple):
     force: Array
 
 
-@njit(cache=True)
+@njit
 def add_force(wrenches: Array, body: int, force: Array, point: Array, moment: Array) -> None:
     """Add a force (3,) N at a ground point (3,) m and a free moment (3,) N m to a body's wrench.
 
@@ -58,8 +57,8 @@ def add_force(wrenches: Array, body: int, force: Array, point: Array, moment: Ar
     wrenches[body, 5] += fz
 
 
-@njit(cache=True, inline='always')
-def _times(m, x, y, z):  # type: ignore[no-untyped-def]
+@njit(inline='always')
+def _times(m: Array, x: float, y: float, z: float) -> tuple[float, float, float]:
     """Give a matrix (3, 3) times a vector, in scalars."""
     return (
         m[0, 0] * x + m[0, 1] * y + m[0, 2] * z,
@@ -68,8 +67,8 @@ def _times(m, x, y, z):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(cache=True, inline='always')
-def _into_body(m, x, y, z):  # type: ignore[no-untyped-def]
+@njit(inline='always')
+def _into_body(m: Array, x: float, y: float, z: float) -> tuple[float, float, float]:
     """Give a transposed matrix (3, 3) times a vector, in scalars."""
     return (
         m[0, 0] * x + m[1, 0] * y + m[2, 0] * z,
@@ -110,7 +109,7 @@ def _inertial_wrenches(tree: Tree, state: BodyState, out: Array) -> None:
         out[b, 3], out[b, 4], out[b, 5] = fx, fy, fz
 
 
-@njit(cache=True)
+@njit
 def subtree_sum(tree: Tree, wrenches: Array) -> Array:
     """Return for every body the sum (n_b, 6) of the wrenches of it and all that it carries."""
     total = wrenches.copy()
@@ -126,7 +125,7 @@ def carry(parent: NDArray[np.int64], wrenches: Array) -> None:
             wrenches[parent[b], i] += wrenches[b, i]
 
 
-@njit(cache=True)
+@njit
 def inverse_dynamics(tree: Tree, state: BodyState, external: Array) -> InverseDynamics:
     """Return the joint wrenches and generalised forces of a motion under external loads.
 
@@ -143,7 +142,7 @@ def inverse_dynamics(tree: Tree, state: BodyState, external: Array) -> InverseDy
     return found
 
 
-@njit(cache=True)
+@njit
 def room_for_dynamics(tree: Tree) -> InverseDynamics:
     """Return room for `balance_motion`."""
     return InverseDynamics(
@@ -179,7 +178,7 @@ def balance_motion(tree: Tree, state: BodyState, external: Array, out: InverseDy
                 force[tree.independent[x]] += along * state.gain[e]
 
 
-@njit(cache=True)
+@njit
 def wrench_at(wrench: Array, point: Array) -> Array:
     """Return a wrench (6,) about the ground's origin as one about another point (3,), m."""
     out = np.empty(6)

@@ -16,10 +16,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from human_model.compiled_cache import kernel, njit
 from human_model.typing import Array
-from muscle_analyzer.core.kernel import kernel
 from muscle_analyzer.core.multibody.inverse_dynamics import carry, wrench_at
 from muscle_analyzer.core.multibody.kinematics import BodyState
 from muscle_analyzer.core.multibody.model import Tree
@@ -44,7 +43,7 @@ class NetMoment(NamedTuple):
     difference: Array
 
 
-@njit(cache=True)
+@njit
 def joint_reactions(tree: Tree, joint_wrench: Array, muscle_wrench: Array) -> Array:
     """Return the reaction wrench (n_b, 6) of the parent on each body at its joint, equation 4.11.
 
@@ -70,7 +69,7 @@ def react(tree: Tree, joint_wrench: Array, wrench: Array) -> None:
             wrench[b, i] = joint_wrench[b, i] - wrench[b, i]
 
 
-@njit(cache=True)
+@njit
 def express(wrench: Array, point: Array, rotation: Array) -> Array:
     """Return a wrench about the ground's origin as (moment about `point`, force) in another frame.
 
@@ -91,7 +90,7 @@ def express(wrench: Array, point: Array, rotation: Array) -> Array:
     return out
 
 
-@njit(cache=True)
+@njit
 def net_moment(joint_wrench: Array, state: BodyState, body: int, root: int) -> NetMoment:
     """Return the net moment at the joint that carries `body`, from both sides.
 

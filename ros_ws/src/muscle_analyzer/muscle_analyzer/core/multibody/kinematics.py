@@ -18,10 +18,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from human_model.compiled_cache import kernel, njit
 from human_model.typing import Array
-from muscle_analyzer.core.kernel import kernel
 from muscle_analyzer.core.multibody.model import Tree
 from muscle_analyzer.core.osim.functions import evaluated
 
@@ -93,7 +92,7 @@ class KinematicsRoom(NamedTuple):
     shift: Array
 
 
-@njit(cache=True)
+@njit
 def room_for_bodies(tree: Tree) -> tuple[KinematicsRoom, BodyState]:
     """Return room for `move_bodies` and for its result, full of zeros."""
     n_b, n_e, n = tree.parent.size, tree.motion_turns.size, tree.independent.size
@@ -107,7 +106,7 @@ def room_for_bodies(tree: Tree) -> tuple[KinematicsRoom, BodyState]:
     return room, state
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def coordinate_state(tree: Tree, q: Array, qd: Array, qdd: Array) -> CoordinateState:
     """Return all tree coordinates and their derivatives from the independent ones.
 
@@ -141,8 +140,10 @@ def _move_coordinates(tree: Tree, q: Array, qd: Array, qdd: Array, out: Coordina
             acceleration[i] = f1 * qdd[k] + f2 * qd[k] * qd[k]
 
 
-@njit(cache=True, inline='always')
-def cross3(ax, ay, az, bx, by, bz):  # type: ignore[no-untyped-def]
+@njit(inline='always')
+def cross3(
+    ax: float, ay: float, az: float, bx: float, by: float, bz: float
+) -> tuple[float, float, float]:
     """Return the cross product of two vectors, in scalars."""
     return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
 
@@ -178,7 +179,7 @@ def _moves(tree: Tree, x: CoordinateState, move: Array, tree_gain: Array, gain: 
             gain[e] = f1 * x_gain[k]
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def forward_kinematics(tree: Tree, q: Array, qd: Array, qdd: Array) -> BodyState:
     """Return the motion of every body.
 
@@ -308,7 +309,7 @@ def set_jacobians(tree: Tree, state: BodyState, out: Array) -> None:
                     out[b, i, q] += screw[e, i] * gain[e]
 
 
-@njit(cache=True)
+@njit
 def body_jacobians(tree: Tree, state: BodyState) -> Array:
     """Return the Jacobians of `set_jacobians`."""
     jacobian = np.empty((tree.parent.size, 6, tree.n_independent[0]))
@@ -316,7 +317,7 @@ def body_jacobians(tree: Tree, state: BodyState) -> Array:
     return jacobian
 
 
-@njit(cache=True)
+@njit
 def point_jacobian(jacobian: Array, point: Array) -> Array:
     """Return the Jacobian (3, n_q) of a body's point at `point` (3,), ground axes, m.
 

@@ -14,10 +14,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from human_model.compiled_cache import kernel, njit
 from human_model.typing import Array
-from muscle_analyzer.core.kernel import kernel
 from muscle_analyzer.core.muscles.millard_curves import MillardCurves, curve_value, millard_curves
 from muscle_analyzer.core.muscles.thelen_curves import (
     thelen_active,
@@ -45,7 +44,7 @@ WIDTH_SCALE, PASSIVE_STRAIN = 1.0, 0.6
 MAX_VELOCITY = 10.0
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def active_force_length(length: float, width_scale: float = WIDTH_SCALE) -> float:
     """Give the active force-length multiplier.
 
@@ -64,7 +63,7 @@ def active_force_length(length: float, width_scale: float = WIDTH_SCALE) -> floa
     return total
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def passive_force_length(length: float, strain: float = PASSIVE_STRAIN) -> float:
     """Give the passive force multiplier.
 
@@ -80,7 +79,7 @@ def passive_force_length(length: float, strain: float = PASSIVE_STRAIN) -> float
     return float((grown - offset) / (np.exp(PASSIVE_SHAPE) - offset))
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def force_velocity(velocity: float) -> float:
     """Give the force-velocity multiplier.
 
@@ -149,7 +148,7 @@ class MuscleParameters(NamedTuple):
         )
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def fibre(
     slack: float, thickness: float, path_length: float, path_velocity: float
 ) -> tuple[float, float, float]:
@@ -168,7 +167,7 @@ def fibre(
     return length, path_velocity * cosine, cosine
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def strength(
     muscles: MuscleParameters, path_length: Array, path_velocity: Array, passive: bool
 ) -> tuple[Array, Array]:

@@ -19,7 +19,7 @@ there are two constructions:
 
 import math
 
-from numba import njit
+from human_model.compiled_cache import njit
 
 #: A point or a direction. Tuples, not arrays: compiled code keeps them in registers, and counts no
 #: references to them.
@@ -32,13 +32,13 @@ INSIDE, MISSED, POSSIBLE, PIERCED = -1, 0, 1, 2
 NOWHERE = (0.0, 0.0, 0.0)
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def component(vector: Vector, axis: int) -> float:
     """Give one of the three components of a vector."""
     return vector[0] if axis == 0 else (vector[1] if axis == 1 else vector[2])
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def _apex_heights(
     first: Vector,
     second: Vector,
@@ -80,7 +80,7 @@ def _apex_heights(
     return low, high
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def _tangents(x: float, y: float, radius: float) -> tuple[float, float, float, float]:
     """Give the tangent points of a circle about the origin seen from a point outside it.
 
@@ -94,7 +94,7 @@ def _tangents(x: float, y: float, radius: float) -> tuple[float, float, float, f
     return px - qx, py + qy, px + qx, py - qy
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def _cylinder_sense(
     one: tuple[float, float, float, float],
     two: tuple[float, float, float, float],
@@ -128,7 +128,7 @@ def _cylinder_sense(
     return 1 if left < right else -1
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def wrap_cylinder(
     first: Vector, second: Vector, dimensions: Vector, axis: int, sign: int, geodesic: bool
 ) -> tuple[int, float, Vector, Vector]:

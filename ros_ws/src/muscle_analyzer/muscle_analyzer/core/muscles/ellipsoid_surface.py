@@ -12,8 +12,8 @@ Chebyshev's method of third order, its curvature term bounded.
 import math
 
 import numpy as np
-from numba import njit
 
+from human_model.compiled_cache import njit
 from muscle_analyzer.core.muscles.cylinder_wrapping import Vector
 
 #: Largest error of sqrt(S) from which one more step, of third order, gives all digits.
@@ -33,7 +33,7 @@ _STEPS = 5
 _REORDERED = {'reassoc', 'contract', 'arcp', 'nsz'}
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def closest_on_ellipsoid(axes: Vector, point: Vector, held: int) -> Vector:
     """Find the point of an ellipsoid closest to a point.
 
@@ -98,7 +98,7 @@ def closest_on_ellipsoid(axes: Vector, point: Vector, held: int) -> Vector:
     return (x if held == 0 else px), (y if held == 1 else py), (z if held == 2 else pz)
 
 
-@njit(cache=True, error_model='numpy', fastmath=_REORDERED)
+@njit(error_model='numpy', fastmath=_REORDERED)
 def _sum_of_normals(
     axes: Vector, enter: Vector, step: Vector, begin: float, middle: float, end: float
 ) -> tuple[float, float, float, float]:
@@ -154,7 +154,7 @@ def _sum_of_normals(
     return sum_x, sum_y, sum_z, error
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def _exact_sum_of_normals(
     axes: Vector, enter: Vector, step: Vector, begin: float, middle: float, end: float
 ) -> Vector:
@@ -173,7 +173,7 @@ def _exact_sum_of_normals(
     return sum_x, sum_y, sum_z
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def mean_direction(axes: Vector, enter: Vector, leave: Vector) -> Vector:
     """Average the unit vectors from a chord to the closest surface, and make a unit vector of it.
 

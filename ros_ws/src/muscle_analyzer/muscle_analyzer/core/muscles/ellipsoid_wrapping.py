@@ -16,8 +16,8 @@ sphere, its section a circle, and lines tangent to the one stay tangent to the o
 import math
 
 import numpy as np
-from numba import njit
 
+from human_model.compiled_cache import njit
 from muscle_analyzer.core.muscles.cylinder_wrapping import (
     INSIDE,
     MISSED,
@@ -40,7 +40,7 @@ _RAW_NODES, _RAW_WEIGHTS = np.polynomial.legendre.leggauss(12)
 _NODES, _WEIGHTS = -_RAW_NODES[:6], 0.5 * _RAW_WEIGHTS[:6]
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def _guide(
     axes: Vector, enter: Vector, leave: Vector, axis: int, sign: int, method: int
 ) -> Vector:
@@ -97,7 +97,7 @@ def _guide(
     return guide
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def _arc(
     axes: Vector,
     p: Vector,
@@ -131,7 +131,7 @@ def _arc(
     return turned * arc
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def wrap_ellipsoid(
     first: Vector, second: Vector, axes: Vector, axis: int, sign: int, method: int
 ) -> tuple[int, float, Vector, Vector]:

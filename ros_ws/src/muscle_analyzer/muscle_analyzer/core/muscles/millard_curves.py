@@ -17,8 +17,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from human_model.compiled_cache import njit
 from human_model.typing import Array, IntArray
 from muscle_analyzer.core.exceptions import OsimFormatError
 from muscle_analyzer.core.osim.model import Muscle
@@ -97,7 +97,7 @@ def curve_table(curves: Sequence[SampledCurve]) -> CurveTable:
     )
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def curve_value(
     lower: Array, step: Array, value: Array, slope: Array, curve: int, x: float
 ) -> float:

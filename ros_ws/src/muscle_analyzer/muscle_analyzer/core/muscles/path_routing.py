@@ -11,10 +11,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from human_model.compiled_cache import kernel, njit
 from human_model.typing import Array, IntArray
-from muscle_analyzer.core.kernel import kernel
 from muscle_analyzer.core.muscles.cylinder_wrapping import Vector
 from muscle_analyzer.core.muscles.path_table import PathTable
 from muscle_analyzer.core.muscles.path_wrapping import gap, path_length, wrap_path
@@ -44,7 +43,7 @@ class Route(NamedTuple):
     entry: IntArray
 
 
-@njit(cache=True, error_model='numpy', inline='always')
+@njit(error_model='numpy', inline='always')
 def room_for_route(longest: int, n_w: int, n_b: int) -> Route:
     """Make room for paths of at most so many points, in a model of so many wraps and bodies."""
     return Route(
@@ -58,7 +57,7 @@ def room_for_route(longest: int, n_w: int, n_b: int) -> Route:
     )
 
 
-@njit(cache=True, error_model='numpy', inline='always')
+@njit(error_model='numpy', inline='always')
 def add_span(point: Array, k: int, other: int, wrench: Array, entry: int, opposite: int) -> float:
     """Add what a straight span between two points does to both bodies; returns its length."""
     x, y, z = point[k, 0], point[k, 1], point[k, 2]
@@ -84,7 +83,7 @@ def add_span(point: Array, k: int, other: int, wrench: Array, entry: int, opposi
     return span
 
 
-@njit(cache=True, error_model='numpy', inline='always')
+@njit(error_model='numpy', inline='always')
 def _add_motion(
     table: PathTable,
     motion: int,

@@ -13,10 +13,8 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
+from human_model.compiled_cache import kernel, njit
 from human_model.typing import Array, IntArray
-from muscle_analyzer.core.kernel import kernel
 from muscle_analyzer.core.muscles.cylinder_wrapping import (
     INSIDE,
     MISSED,
@@ -55,7 +53,7 @@ def place_surfaces(wraps: WrapTable, position: Array, rotation: Array, frame: Ar
                 )
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def into(frame: Array, k: int, point: Array, p: int) -> Vector:
     """Express ground point p of (n, 3) in frame k of (n_o, 12)."""
     x, y, z = point[p, 0] - frame[k, 0], point[p, 1] - frame[k, 1], point[p, 2] - frame[k, 2]
@@ -66,7 +64,7 @@ def into(frame: Array, k: int, point: Array, p: int) -> Vector:
     )
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def out_of(frame: Array, k: int, local: Vector) -> Vector:
     """Express a point given in frame k of (n_o, 12) in ground axes."""
     x, y, z = local
@@ -77,14 +75,14 @@ def out_of(frame: Array, k: int, local: Vector) -> Vector:
     )
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def distance(a: Vector, b: Vector) -> float:
     """Give the distance of two points."""
     dx, dy, dz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
     return math.sqrt(dx * dx + dy * dy + dz * dz)
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def gap(point: Array, k: int, other: int) -> float:
     """Give the distance of two rows of (n, 3)."""
     dx, dy, dz = (
@@ -95,7 +93,7 @@ def gap(point: Array, k: int, other: int) -> float:
     return math.sqrt(dx * dx + dy * dy + dz * dz)
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def path_length(point: Array, owner: IntArray, arc: Array, n: int) -> float:
     """Add up a path; two neighbours of one wrap object are joined by its arc."""
     length = 0.0
@@ -107,7 +105,7 @@ def path_length(point: Array, owner: IntArray, arc: Array, n: int) -> float:
     return length
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def _wrap_segment(
     kind: int,
     first: Vector,
@@ -128,7 +126,7 @@ def _wrap_segment(
     return wrap_torus(first, second, dimensions, axis, sign, geodesic)
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def _move(point: Array, owner: IntArray, arc: Array, old: int, new: int) -> None:
     """Copy one entry of a path to another place."""
     owner[new], arc[new] = owner[old], arc[old]
@@ -136,7 +134,7 @@ def _move(point: Array, owner: IntArray, arc: Array, old: int, new: int) -> None
         point[new, i] = point[old, i]
 
 
-@njit(cache=True, error_model='numpy', inline='always')
+@njit(error_model='numpy', inline='always')
 def wrap_path(
     kind: IntArray,
     dimensions: Array,

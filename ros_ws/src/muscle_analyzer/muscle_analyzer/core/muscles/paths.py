@@ -15,10 +15,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from human_model.compiled_cache import kernel, njit
 from human_model.typing import Array, IntArray
-from muscle_analyzer.core.kernel import kernel
 from muscle_analyzer.core.multibody.kinematics import BodyState
 from muscle_analyzer.core.muscles.path_routing import Route, add_span, find_routes, room_for_route
 from muscle_analyzer.core.muscles.path_table import PathTable, ProductTable, SpanTable
@@ -83,7 +82,7 @@ class PathRoom(NamedTuple):
     route: Route
 
 
-@njit(cache=True)
+@njit
 def room_for_paths(table: PathTable, n_b: int) -> tuple[PathRoom, CrossedPaths]:
     """Make room for the paths of a model of n_b bodies, and for what is found about them."""
     n_m, wraps = table.point_start.size - 1, table.wraps
@@ -123,7 +122,7 @@ def _place_points(
                     )
 
 
-@njit(cache=True, error_model='numpy', inline='always')
+@njit(error_model='numpy', inline='always')
 def _moved(table: PathTable, motion: int, i: int, coordinate: Array) -> float:
     """Give one coordinate of a moving point in its body [m]."""
     x = coordinate[table.motion_coordinate[motion, i]]
@@ -203,7 +202,7 @@ def _paths(
     _add_moment_arms(table.products, room.column, wrench, arm)
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def _with_all_arms(table: PathTable, found: CrossedPaths, n_q: int) -> MusclePaths:
     """Put the moment arms where they belong among those of all coordinates."""
     moment_arm = np.zeros((found.length.size, n_q))
@@ -213,7 +212,7 @@ def _with_all_arms(table: PathTable, found: CrossedPaths, n_q: int) -> MusclePat
     return MusclePaths(found.length, moment_arm, found.wrench)
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def muscle_paths(
     table: PathTable, body_position: Array, body_rotation: Array, jacobian: Array
 ) -> MusclePaths:
@@ -243,7 +242,7 @@ def muscle_paths(
     return _with_all_arms(table, found, jacobian.shape[2])
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def posture_paths(table: PathTable, state: BodyState, jacobian: Array) -> MusclePaths:
     """Compute all paths.
 
@@ -264,7 +263,7 @@ def posture_paths(table: PathTable, state: BodyState, jacobian: Array) -> Muscle
     return _with_all_arms(table, found, jacobian.shape[2])
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def crossed_paths(table: PathTable, state: BodyState) -> CrossedPaths:
     """Compute all paths as `posture_paths`, but without Jacobians and the zeros among the arms."""
     room, found = room_for_paths(table, state.position.shape[0])
@@ -281,7 +280,7 @@ def trace_paths(table: PathTable, state: BodyState, room: PathRoom, out: Crossed
     )
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def body_wrenches(table: PathTable, wrench: Array, force: Array, n_bodies: int) -> Array:
     """Sum what muscles of given forces exert on the bodies.
 

@@ -14,8 +14,7 @@ not wrap.
 
 import math
 
-from numba import njit
-
+from human_model.compiled_cache import njit
 from muscle_analyzer.core.muscles.cylinder_wrapping import (
     INSIDE,
     MISSED,
@@ -31,7 +30,7 @@ from muscle_analyzer.core.muscles.cylinder_wrapping import (
 CENTRAL = 1e-5
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def wrap_sphere(
     first: Vector, second: Vector, dimensions: Vector, axis: int, sign: int
 ) -> tuple[int, float, Vector, Vector]:

@@ -13,8 +13,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numba import njit
 
+from human_model.compiled_cache import njit
 from human_model.typing import Array
 from muscle_analyzer.core.osim.model import Muscle
 
@@ -41,20 +41,20 @@ def thelen_shapes(muscles: Sequence[Muscle]) -> Array:
     ).reshape(-1, len(DEFAULTS))
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def thelen_active(shape: Array, length: float) -> float:
     """Give the active multiplier (equation 4) of a muscle of properties `shape` (6,)."""
     return float(np.exp(-((length - 1.0) ** 2) / shape[0]))
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def thelen_passive(shape: Array, length: float) -> float:
     """Give the passive multiplier (equation 3), without force below the optimal length."""
     stretch = max(length - 1.0, 0.0)
     return float(np.expm1(shape[1] * stretch / shape[2]) / np.expm1(shape[1]))
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def thelen_rate(shape: Array, velocity: float) -> float:
     """Give the force-velocity multiplier (equations 6 and 7 solved for the force).
 

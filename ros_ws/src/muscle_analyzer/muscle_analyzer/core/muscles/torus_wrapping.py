@@ -13,8 +13,7 @@ that is not a zero of it, and so not nearest to anything; such points are not ta
 
 import math
 
-from numba import njit
-
+from human_model.compiled_cache import njit
 from muscle_analyzer.core.muscles.cylinder_wrapping import (
     NOWHERE,
     POSSIBLE,
@@ -31,14 +30,14 @@ SEARCH_FACTOR, CYLINDER_LENGTH = 2.0, 1e4
 _STEPS, _TOLERANCE = 100, 1e-15
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def _slope(u: float, base: float, reach: float, c3: float, c4: float, c5: float) -> float:
     """Give half the derivative of the squared distance of a line's point from a circle."""
     from_axis = math.sqrt(max(0.0, u * u * c4 + 2.0 * c3 * u + c5))
     return u + base - reach * (c4 * u + c3) / from_axis if from_axis > 0.0 else u + base
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def _root(
     low: float, high: float, base: float, reach: float, c3: float, c4: float, c5: float
 ) -> float:
@@ -54,7 +53,7 @@ def _root(
     return 0.5 * (low + high)
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def nearest_of_ring(
     first: Vector, second: Vector, radius: float, axis: int, sign: int
 ) -> tuple[bool, float, float]:
@@ -118,7 +117,7 @@ def nearest_of_ring(
     return found, nearest_x, nearest_y
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def wrap_torus(
     first: Vector, second: Vector, dimensions: Vector, axis: int, sign: int, geodesic: bool
 ) -> tuple[int, float, Vector, Vector]:

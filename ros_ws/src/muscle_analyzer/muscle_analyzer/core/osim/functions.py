@@ -21,9 +21,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
+from human_model.compiled_cache import njit
 from human_model.typing import Array
 from muscle_analyzer.core.exceptions import OsimFormatError
 
@@ -225,7 +225,7 @@ def function_table(functions: Sequence[PiecewisePolynomial]) -> FunctionTable:
     return FunctionTable(first, lower, anchor, coefficient)
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def evaluated(
     first_piece: NDArray[np.int64],
     lower: Array,
@@ -252,7 +252,7 @@ def evaluated(
     return value, first, second
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def evaluate(table: FunctionTable, f: int, x: float) -> tuple[float, float, float]:
     """Return value, first and second derivative of function number `f` at `x`."""
     return evaluated(table.first_piece, table.lower, table.anchor, table.coefficient, f, x)

@@ -2,25 +2,23 @@
 # SPDX-License-Identifier: Apache-2.0
 """Loads models through a cache on disk, so that an `.osim` file is parsed once per machine.
 
-The cache is `$LIFT_CACHE`, else `$XDG_CACHE_HOME/lift_monitor`, else `~/.cache/lift_monitor`. An
-entry's name is a hash of what the model file holds, of what is to be left out of it, and of the
-modules that read it: whatever changes, an old entry is not found. Entries are written under
-another name and moved into place, so that processes that build the same one do not meet.
+The name of an entry is a hash of the content of the model file, of the elements to leave out, and
+of the modules that read it: if any of them changes, an old entry is not found. Entries are
+written under another name and moved into place, so that two processes can build the same one.
 """
 
 from __future__ import annotations
 
 import hashlib
-import os
 from collections.abc import Collection
 from dataclasses import replace
-from functools import cache
 from pathlib import Path
 from tempfile import NamedTemporaryFile
 from zipfile import BadZipFile
 
 import numpy as np
 
+from human_model.cache import cache_directory, source_hash
 from muscle_analyzer.core.exceptions import ModelCacheError, OsimFormatError
 from muscle_analyzer.core.osim.model import OsimModel
 from muscle_analyzer.core.osim.model_codec import decode, encode
@@ -52,7 +50,7 @@ def load_model(
         content = path.read_bytes()
     except OSError as error:
         raise OsimFormatError(f'{path}: cannot be read: {error}') from error
-    entry = (directory or cache_directory()) / f'{_key(content, leave_out)}.npz'
+    entry = (directory or cache_directory('models')) / f'{_key(content, leave_out)}.npz'
     try:
         return replace(_read_entry(entry), source=str(path))
     except (OSError, ModelCacheError):
@@ -66,28 +64,11 @@ def load_model(
     return model
 
 
-def cache_directory() -> Path:
-    """Return where the models are kept."""
-    if own := os.environ.get('LIFT_CACHE'):
-        return Path(own) / 'models'
-    base = os.environ.get('XDG_CACHE_HOME')
-    return (Path(base) if base else Path.home() / '.cache') / 'lift_monitor' / 'models'
-
-
 def _key(content: bytes, leave_out: Collection[str]) -> str:
-    digest = hashlib.sha256(_reader_hash())
+    digest = hashlib.sha256(source_hash(__file__).encode())
     digest.update('\n'.join(sorted(leave_out)).encode())
     digest.update(hashlib.sha256(content).digest())
     return digest.hexdigest()
-
-
-@cache
-def _reader_hash() -> bytes:
-    here = Path(__file__).parent
-    digest = hashlib.sha256()
-    for file in sorted(here.glob('*.py')):
-        digest.update(file.read_bytes())
-    return digest.digest()
 
 
 def _read_entry(entry: Path) -> OsimModel:

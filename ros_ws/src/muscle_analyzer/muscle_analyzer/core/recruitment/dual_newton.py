@@ -17,8 +17,8 @@ exponent, which keeps the system definite.
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from human_model.compiled_cache import njit
 from human_model.typing import Array, IntArray
 from muscle_analyzer.core.recruitment.false_position import crossing, narrowed, whole_step
 
@@ -46,7 +46,7 @@ class Columns(NamedTuple):
     value: Array
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def _minimiser(
     pull: float, low: float, high: float, weight: float, exponent: float
 ) -> tuple[float, float]:
@@ -66,7 +66,7 @@ def _minimiser(
     return free, slope
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def columns_of(matrix: Array) -> Columns:
     """Give the non-zero entries of a matrix."""
     n_rows, n_columns = matrix.shape
@@ -91,7 +91,7 @@ def columns_of(matrix: Array) -> Columns:
     return Columns(start, row, value)
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def cholesky_solve(matrix: Array, vector: Array) -> bool:
     """Solve in place; the solution replaces `vector`.  False if not positive definite.
 
@@ -125,14 +125,14 @@ def cholesky_solve(matrix: Array, vector: Array) -> bool:
     return True
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def _copy(source: Array, target: Array) -> None:
     """Copy element by element (slices cost the compiler seconds)."""
     for i in range(source.size):
         target[i] = source[i]
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def _evaluate(
     columns: Columns,
     reserve: Array,
@@ -165,7 +165,7 @@ def _evaluate(
     return worst
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def _hessian(columns: Columns, reserve: Array, slope: Array, hessian: Array) -> None:
     """Fill the lower triangle of minus the dual's generalised Hessian."""
     start, row, value = columns
@@ -181,7 +181,7 @@ def _hessian(columns: Columns, reserve: Array, slope: Array, hessian: Array) -> 
                     hessian[row[k], row[other]] += scaled * value[other]
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def dot(a: Array, b: Array) -> float:
     """Give the product of two vectors."""
     total = 0.0
@@ -190,7 +190,7 @@ def dot(a: Array, b: Array) -> float:
     return total
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def _step_size(
     columns: Columns,
     reserve: Array,
@@ -235,7 +235,7 @@ def _step_size(
     return size
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def solve_dual(
     columns: Columns,
     reserve: Array,

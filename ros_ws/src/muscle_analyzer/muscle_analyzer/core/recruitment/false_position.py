@@ -7,7 +7,7 @@ Illinois rule: when one end stays twice, the slope kept for it is halved.
 
 from typing import NamedTuple
 
-from muscle_analyzer.core.kernel import kernel
+from human_model.compiled_cache import kernel
 
 
 class Bracket(NamedTuple):

@@ -24,9 +24,9 @@ and the reserves take the rest.
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from human_model.compiled_cache import njit
 from human_model.typing import Array
 from muscle_analyzer.core.recruitment.dual_newton import (
     LINE_TRIALS,
@@ -98,7 +98,7 @@ class _Iterate(NamedTuple):
     gradient: Array
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def _largest(problem: _Problem, pull: Array, guess: float) -> float:
     """Give the b that muscles of these pulls press on with 1, or the bound of b next to it.
 
@@ -122,7 +122,7 @@ def _largest(problem: _Problem, pull: Array, guess: float) -> float:
     return b
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def _pull(columns: Columns, multiplier: Array, pull: Array) -> None:
     """Fill A^T y."""
     start, row, value = columns
@@ -132,7 +132,7 @@ def _pull(columns: Columns, multiplier: Array, pull: Array) -> None:
             pull[i] += value[k] * multiplier[row[k]]
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def _unbalanced(problem: _Problem, point: _Iterate) -> float:
     """Fill what activations and multipliers leave unbalanced; give the largest of it."""
     start, row, value = problem.columns
@@ -150,7 +150,7 @@ def _unbalanced(problem: _Problem, point: _Iterate) -> float:
     return worst
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def _evaluate(problem: _Problem, point: _Iterate, guess: float) -> tuple[float, float, int]:
     """Fill the minimisers for the multipliers of an iterate.
 
@@ -175,7 +175,7 @@ def _evaluate(problem: _Problem, point: _Iterate, guess: float) -> tuple[float, 
     return b, _unbalanced(problem, point), changed
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def _step(problem: _Problem, place: Places, step: Array) -> tuple[bool, float]:
     """Solve for the Newton step in place of the gradient; give success, and how b goes with it.
 
@@ -207,7 +207,7 @@ def _step(problem: _Problem, place: Places, step: Array) -> tuple[bool, float]:
     return True, dot(together, step) / stiffness if place[-1] == FREE else 0.0
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def _step_size(
     problem: _Problem, multiplier: Array, step: Array, guess: float, first: float, whole: float
 ) -> float:
@@ -243,7 +243,7 @@ def _step_size(
     return size
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def _maximise(
     problem: _Problem, point: _Iterate, tolerance: float, max_iterations: int
 ) -> tuple[float, int, bool]:
@@ -287,7 +287,7 @@ def _maximise(
     return b, iterations, True
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def _refine(problem: _Problem, point: _Iterate, b: float) -> tuple[float, float]:
     """Take off what rounding left of the balance; give b and what is left.
 
@@ -321,7 +321,7 @@ def _refine(problem: _Problem, point: _Iterate, b: float) -> tuple[float, float]
     return b, worst
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def solve_min_max(
     columns: Columns,
     reserve: Array,

@@ -7,8 +7,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from human_model.compiled_cache import njit
 from human_model.typing import Array, BoolArray, IntArray
 from muscle_analyzer.core.recruitment.dual_newton import Columns, solve_dual
 
@@ -70,7 +70,7 @@ class Account(NamedTuple):
     dual: float
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def residual_limit(actuators: Actuators, torque: Array) -> float:
     """Give the largest balance residual of a solution [N m]."""
     largest = 1.0
@@ -79,7 +79,7 @@ def residual_limit(actuators: Actuators, torque: Array) -> float:
     return actuators.tolerance * largest
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def first_guess(past: Array) -> Array:
     """Give multipliers (n_c,) to start a frame from: on as the two frames before it went.
 
@@ -91,7 +91,7 @@ def first_guess(past: Array) -> Array:
     return guess
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def remember(past: Array, multiplier: Array, converged: bool) -> None:
     """Put a frame's multipliers (n_c,) in front of `past`, or forget all if it failed."""
     first = not past[0].any()
@@ -103,7 +103,7 @@ def remember(past: Array, multiplier: Array, converged: bool) -> None:
         past[0, j] = multiplier[j]
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def share_torque(
     actuators: Actuators, columns: Columns, torque: Array, multiplier: Array
 ) -> tuple[Array, Array, int, bool]:
@@ -145,7 +145,7 @@ def share_torque(
     return activation, residual, iterations, converged
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def account(
     actuators: Actuators,
     columns: Columns,

@@ -9,13 +9,12 @@ work, and a body's point hangs on few of a tree's coordinates: most rows of a pr
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from human_model.compiled_cache import kernel, njit
 from human_model.typing import Array, IntArray
-from muscle_analyzer.core.kernel import kernel
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def normal_equations(jacobian: Array, residual: Array) -> tuple[Array, Array]:
     """Return J^T J (n, n) and J^T r (n,) of a Jacobian (3 m, n) and a residual (3 m,).
 
@@ -39,7 +38,7 @@ def normal_equations(jacobian: Array, residual: Array) -> tuple[Array, Array]:
     return normal, gradient
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def transposed_times(matrix: Array, vector: Array) -> Array:
     """Return A^T v (n,) of a matrix (m, n) and a vector (m,)."""
     out = np.zeros(matrix.shape[1])
@@ -50,7 +49,7 @@ def transposed_times(matrix: Array, vector: Array) -> Array:
     return out
 
 
-@njit(cache=True, error_model='numpy')
+@njit(error_model='numpy')
 def factorise(matrix: Array) -> bool:
     """Write U of a positive definite matrix U^T U (n, n) into its upper triangle; False if not.
 
@@ -87,7 +86,7 @@ def solve_factorised(upper: Array, right: Array) -> None:
         right[i] /= upper[i, i]
 
 
-@njit(cache=True)
+@njit
 def damped_part(normal: Array, index: IntArray, damping: float) -> Array:
     """Return the rows and columns `index` of the normal matrix, with damping."""
     n = index.size
@@ -99,7 +98,7 @@ def damped_part(normal: Array, index: IntArray, damping: float) -> Array:
     return matrix
 
 
-@njit(cache=True)
+@njit
 def solution(factor: Array, positive: bool, index: IntArray, right: Array) -> Array:
     """Return the solution (n_q,) for the unknowns `index`, zero elsewhere; NaN without one."""
     part = right[index]

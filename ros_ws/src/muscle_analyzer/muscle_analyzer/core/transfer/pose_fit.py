@@ -15,11 +15,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from human_model.compiled_cache import kernel, njit
 from human_model.typing import Array
-from muscle_analyzer.core.kernel import kernel
 from muscle_analyzer.core.multibody.kinematics import (
     BodyState,
     forward_kinematics,
@@ -102,7 +101,7 @@ class PoseFit(NamedTuple):
     residual: Array
 
 
-@njit(cache=True)
+@njit
 def _bounded_step(
     normal: Array,
     gradient: Array,
@@ -157,7 +156,7 @@ def _cost(targets: Targets, residual: Array, q: Array) -> float:
     return 0.5 * total
 
 
-@njit(cache=True)
+@njit
 def fit_pose(
     tree: Tree,
     targets: Targets,
@@ -245,7 +244,7 @@ def fit_pose(
     return PoseFit(q, max_iterations, cost, size, False, state, residual)
 
 
-@njit(cache=True)
+@njit
 def map_rates(
     tree: Tree,
     targets: Targets,

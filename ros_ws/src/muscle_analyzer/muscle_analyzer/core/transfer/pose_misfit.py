@@ -7,10 +7,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from human_model.compiled_cache import kernel, njit
 from human_model.typing import Array, IntArray
-from muscle_analyzer.core.kernel import kernel
 from muscle_analyzer.core.multibody.kinematics import BodyState, cross3, set_jacobians
 from muscle_analyzer.core.multibody.model import Tree
 
@@ -87,7 +86,7 @@ def set_misfit(targets: Targets, state: BodyState, out: Array) -> None:
         out[at + 2] = z * factor * weight[f]
 
 
-@njit(cache=True)
+@njit
 def misfit(targets: Targets, state: BodyState) -> Array:
     """Return the misfits of `set_misfit`."""
     out = np.empty(3 * (targets.point_body.size + targets.frame_body.size))
@@ -127,7 +126,7 @@ def set_misfit_jacobian(
                 out[3 * (n_p + f) + j, k] = w * spatial[b, j, k]
 
 
-@njit(cache=True)
+@njit
 def misfit_jacobian(tree: Tree, targets: Targets, state: BodyState) -> Array:
     """Return the derivative of `set_misfit_jacobian`."""
     n_q = tree.n_independent[0]

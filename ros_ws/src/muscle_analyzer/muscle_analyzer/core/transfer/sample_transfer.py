@@ -10,8 +10,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from human_model.compiled_cache import njit
 from human_model.tree import TreeArrays
 from human_model.typing import Array, BoolArray, IntArray
 from muscle_analyzer.core.held import Held
@@ -102,7 +102,7 @@ class TransferredFrames(NamedTuple):
     off: Array
 
 
-@njit(cache=True)
+@njit
 def _no_frames(n: int, n_q: int, n_p: int, n_f: int) -> TransferredFrames:
     """Give room for n frames."""
     return TransferredFrames(
@@ -118,7 +118,7 @@ def _no_frames(n: int, n_q: int, n_p: int, n_f: int) -> TransferredFrames:
     )
 
 
-@njit(cache=True)
+@njit
 def _heading(setup: TransferSetup, own: SkeletonState, frames: Array) -> float:
     """Return the turn about the vertical from the coordinates to the motion, rad.
 
@@ -134,7 +134,7 @@ def _heading(setup: TransferSetup, own: SkeletonState, frames: Array) -> float:
     return float(np.arctan2(sine, cosine))
 
 
-@njit(cache=True)
+@njit
 def _distances(
     setup: TransferSetup, own: SkeletonState, heading: float, place: Array, out: Array
 ) -> None:
@@ -153,7 +153,7 @@ def _distances(
         out[i] = np.sqrt((away[i, 0] - x0) ** 2 + (away[i, 1] - y0) ** 2 + away[i, 2] ** 2)
 
 
-@njit(cache=True)
+@njit
 def _set_targets(setup: TransferSetup, place: Array, frames: Array, position: Array) -> None:
     """Write a frame's places into the targets: points, frames and reference values."""
     point, frame, reference = setup.targets.point, setup.targets.frame, setup.targets.reference
@@ -177,7 +177,7 @@ def _set_targets(setup: TransferSetup, place: Array, frames: Array, position: Ar
             reference[k] += position[setup.same[k]]
 
 
-@njit(cache=True)
+@njit
 def _rates(
     setup: TransferSetup, heading: float, point: Array, frame: Array, values: Array
 ) -> Rates:
@@ -195,7 +195,7 @@ def _rates(
     return Rates(moved[0], moved[1], reference)
 
 
-@njit(cache=True)
+@njit
 def _first(setup: TransferSetup) -> Array:
     """Return a start without a frame before: the target pelvis, the skeleton's limbs."""
     targets = setup.targets
@@ -219,7 +219,7 @@ def _first(setup: TransferSetup) -> Array:
     return start
 
 
-@njit(cache=True)
+@njit
 def _set_remaining(targets: Targets, off: Array, distance: Array, angle: Array) -> None:
     """Write the remaining distances (n_p,) and angles (n_f,) of a misfit, m and rad."""
     n_p = distance.size
@@ -231,7 +231,7 @@ def _set_remaining(targets: Targets, off: Array, distance: Array, angle: Array) 
             angle[i - n_p] = size / targets.frame_weight[i - n_p]
 
 
-@njit(cache=True, nogil=True)
+@njit(nogil=True)
 def transfer_frames(
     held: Held[TransferSetup], motion: SkeletonMotion, start: Array, same_point: float
 ) -> tuple[int, TransferredFrames]:

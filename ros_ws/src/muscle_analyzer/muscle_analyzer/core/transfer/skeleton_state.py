@@ -7,9 +7,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from human_model.compiled import body_motion
+from human_model.compiled_cache import njit
 from human_model.tree import TreeArrays
 from human_model.typing import Array, IntArray
 from muscle_analyzer.core.multibody.kinematics import cross3
@@ -60,7 +60,7 @@ class SkeletonMotion(NamedTuple):
     frame_column: IntArray
 
 
-@njit(cache=True)
+@njit
 def set_frame(motion: SkeletonMotion, k: int, place: Array, frames: Array) -> None:
     """Write places (n_p, 3) and rotation matrices (n_f, 3, 3) of a frame of the motion."""
     for i in range(place.shape[0]):
@@ -82,7 +82,7 @@ def set_frame(motion: SkeletonMotion, k: int, place: Array, frames: Array) -> No
         m[2, 2] = 1 - 2 * (x * x + y * y)
 
 
-@njit(cache=True)
+@njit
 def skeleton_state(
     tree: TreeArrays,
     point_body: IntArray,
