@@ -12,7 +12,6 @@ from motion_tracker.core.lift_events import (
     LiftPhase,
     _parabola_at_zero,
     detect_lifts,
-    pair_lifts,
 )
 
 RATE = 100.0
@@ -57,7 +56,8 @@ def recording(path, rise, duration, noise, seed):
 def test_start_and_end_are_found(path, noise, tolerance, rise, duration):
     for seed in range(5 if noise else 1):
         time, height, start, end = recording(path, rise, duration, noise, seed)
-        ((first, last),) = pair_lifts(detect_lifts(time, height))
+        first, last = detect_lifts(time, height)
+        assert (first.phase, last.phase) == (LiftPhase.START, LiftPhase.END)
         assert abs(first.time - start) <= tolerance, seed
         assert abs(last.time - end) <= tolerance, seed
         assert first.height == pytest.approx(0.1, abs=2e-3)
@@ -87,8 +87,8 @@ def test_long_recordings_forget_their_past_without_changing_events():
     ]
     live += detector.finish()
     assert live == detect_lifts(time, heights)
-    assert len(pair_lifts(live)) == 6
     assert [event.number for event in live] == [k for k in range(1, 7) for _ in range(2)]
+    assert [event.phase for event in live] == [LiftPhase.START, LiftPhase.END] * 6
 
 
 def test_a_box_at_rest_is_never_lifted():

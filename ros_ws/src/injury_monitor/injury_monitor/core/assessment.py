@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""What one lift means: peaks against limits, measured against predicted (thesis section 4.2)."""
+"""Assessment of one lift: peaks and limits, measured and predicted lift (thesis section 4.2)."""
 
 from __future__ import annotations
 
@@ -63,9 +63,9 @@ class RiskAssessment:
         In force, with their sources.
     criteria : tuple of Criterion
         Compression (two limits), shear, torque and activation index; measured, then predicted.
-    unnecessary_compression, unnecessary_shear : float
-        Measured peak minus predicted peak [N]: the part of the load that the optimal lift does
-        without; NaN without a predicted lift.
+    avoidable_compression, avoidable_shear : float
+        Measured peak minus predicted peak [N]: the load that the optimal lift avoids; NaN without
+        a predicted lift.
     torque_index : dict
         ``measured`` and ``predicted`` to the peaks of every joint, where there are torques.
     activation_index : dict
@@ -75,19 +75,19 @@ class RiskAssessment:
     zone : Zone
         NIOSH 1981 zone of the measured peak compression.
     summary : str
-        In words.
+        One sentence.
     samples_left_out : int
         Samples of all series whose solve report is not good.
     notes : tuple of str
-        What could not be assessed, and why.
+        Parts that could not be assessed, each with its reason.
     """
 
     lift_id: str
     work: Work
     limits: LimitSet
     criteria: tuple[Criterion, ...]
-    unnecessary_compression: float
-    unnecessary_shear: float
+    avoidable_compression: float
+    avoidable_shear: float
     torque_index: dict[str, TorqueIndexPeaks]
     activation_index: dict[str, ActivationIndex]
     lifting: LiftingAssessment
@@ -145,7 +145,7 @@ def assess_lift(
     notes: list[str] = []
     if predicted is None:
         notes.append(
-            'no predicted lift, the unnecessary part of the load is not known: '
+            'no predicted lift, the avoidable load is not known: '
             + (no_prediction or 'no reason was given')
         )
     lifts = (
@@ -174,9 +174,9 @@ def assess_lift(
         if lift.activations is None:
             notes.append(f'{source}: no muscle activations')
         else:
-            held = lift.activations
+            muscles = lift.activations
             activations[source] = activation_index(
-                held.time, held.muscles, held.activation, held.solved, window
+                muscles.time, muscles.muscles, muscles.activation, muscles.solved, window
             )
             muscle, value, time = activations[source].worst()
             criteria.append(
@@ -260,7 +260,7 @@ def _difference(peaks: dict[str, Criterion]) -> float:
     return peaks['measured'].value - peaks['predicted'].value
 
 
-def _summary(peak: Criterion, zone: Zone, unnecessary: float, lifting: LiftingAssessment) -> str:
+def _summary(peak: Criterion, zone: Zone, avoidable: float, lifting: LiftingAssessment) -> str:
     if zone is Zone.UNKNOWN:
         text = 'L5-S1 compression ' + zone_meaning(zone)
     else:
@@ -268,10 +268,10 @@ def _summary(peak: Criterion, zone: Zone, unnecessary: float, lifting: LiftingAs
             f'Peak L5-S1 compression {peak.value:.0f} N ({peak.per_kilogram:.1f} N/kg), '
             f'{zone_meaning(zone)}'
         )
-    if unnecessary > 0.0:
-        text += f'; {unnecessary:.0f} N of it were not necessary'
-    elif not math.isnan(unnecessary):
-        text += f'; the optimal lift would have a peak {-unnecessary:.0f} N higher'
+    if avoidable > 0.0:
+        text += f'; {avoidable:.0f} N of it were avoidable'
+    elif not math.isnan(avoidable):
+        text += f'; the peak of the optimal lift is {-avoidable:.0f} N higher'
     if not math.isnan(lifting.lifting_index):
         text += f'; lifting index {lifting.lifting_index:.2f} ({lifting.band})'
     return text + '.'

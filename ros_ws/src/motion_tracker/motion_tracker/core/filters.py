@@ -9,7 +9,6 @@ that the two passes together have -3 dB where asked (Robertson & Dowling 2003; W
 section 2.2.4.4); live one causal fourth-order filter runs, whose delay is known and stated.
 """
 
-from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -25,68 +24,11 @@ MOTION_CUTOFF = 6.0
 PLATE_CUTOFF = 25.0
 
 
-@dataclass(frozen=True)
-class GapReport:
-    """What was missing in a recording and what was done about it.
-
-    Attributes
-    ----------
-    filled : int
-        Missing values replaced by interpolation.
-    remaining : int
-        Missing values left, because the gap was too long or had no value on one side.
-    longest : float
-        Longest gap in seconds, filled or not.
-    """
-
-    filled: int
-    remaining: int
-    longest: float
-
-
 def _check(rate: float, cutoff: float) -> None:
     if not (np.isfinite(rate) and rate > 0):
         raise FilterError(f'rate: a positive number of hertz is needed, got {rate}')
     if not (np.isfinite(cutoff) and 0 < cutoff < rate / 2):
         raise FilterError(f'cutoff: {cutoff} Hz is not between 0 and half of the rate {rate} Hz')
-
-
-def fill_gaps(samples: npt.ArrayLike, rate: float, longest: float) -> tuple[Array, GapReport]:
-    """Replace short runs of NaN by linear interpolation, column by column.
-
-    Parameters
-    ----------
-    samples
-        Shape (n,) or (n, channels); NaN marks missing values.
-    rate
-        Samples per second [Hz].
-    longest
-        Longest gap that is filled [s].
-
-    Returns
-    -------
-    ndarray, GapReport
-        A filled copy of the same shape, and what was done.
-    """
-    array = np.array(samples, dtype=np.float64)
-    columns = array.reshape(array.shape[0], -1)
-    filled = remaining = 0
-    worst = 0
-    for column in columns.T:
-        missing = ~np.isfinite(column)
-        if not missing.any():
-            continue
-        edges = np.flatnonzero(np.diff(np.concatenate([[False], missing, [False]]).astype(int)))
-        for first, last in zip(edges[::2], edges[1::2], strict=True):
-            length = int(last - first)
-            worst = max(worst, length)
-            if first == 0 or last == len(column) or length > longest * rate + 1e-9:
-                remaining += length
-                continue
-            inner = np.arange(1, length + 1) / (length + 1)
-            column[first:last] = column[first - 1] + inner * (column[last] - column[first - 1])
-            filled += length
-    return array, GapReport(filled, remaining, worst / rate)
 
 
 def zero_phase(samples: npt.ArrayLike, rate: float, cutoff: float) -> Array:
@@ -120,7 +62,7 @@ def zero_phase(samples: npt.ArrayLike, rate: float, cutoff: float) -> Array:
         raise FilterError(f'samples: at least two are needed, got shape {array.shape}')
     if not np.all(np.isfinite(array)):
         where = int(np.argwhere(~np.isfinite(array))[0][0])
-        raise FilterError(f'samples: not finite at index {where}; fill the gaps first')
+        raise FilterError(f'samples: not finite at index {where}')
     # Loads for longer than all else here; needed only at the end of a lift.
     from scipy.signal import sosfiltfilt
 
@@ -245,11 +187,6 @@ class CausalFilter:
         self.delay = float(polynomial[-2] / polynomial[-1] / self._omega)
         self._state: Array | None = None
 
-    @property
-    def delay_samples(self) -> float:
-        """Group delay at low frequency in samples."""
-        return self.delay * self.rate
-
     def reset(self) -> None:
         """Forget the past; the next sample is taken as having been there for ever."""
         self._state = None
@@ -295,10 +232,3 @@ class CausalFilter:
             raise FilterError(f'sample: channel {bad} is not finite')
         self._state = state
         return out
-
-    def frequency_response(self, frequency: npt.ArrayLike) -> npt.NDArray[np.complex128]:
-        """Complex gain of value from input at the given frequencies [Hz]."""
-        z = np.exp(2j * np.pi * np.atleast_1d(np.asarray(frequency, dtype=np.float64)) / self.rate)
-        eye = np.eye(self.ORDER)
-        gains = [np.linalg.solve(point * eye - self._a, self._b)[0] + self._d[0] for point in z]
-        return np.array(gains, dtype=np.complex128)

@@ -13,7 +13,6 @@ zero of the smoothed velocity. Smoothing looks a fixed time ahead, so the events
 and offline; live they are only reported later, and say how much.
 """
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -376,15 +375,3 @@ def detect_lifts(
         for event in detector.push(*map(float, row))
     ]
     return events + detector.finish()
-
-
-def pair_lifts(events: Iterable[LiftEvent]) -> list[tuple[LiftEvent, LiftEvent]]:
-    """Start and end of every lift that has both."""
-    starts = {}
-    pairs = []
-    for event in events:
-        if event.phase is LiftPhase.START:
-            starts[event.number] = event
-        elif event.number in starts:
-            pairs.append((starts[event.number], event))
-    return pairs
