@@ -41,9 +41,10 @@ test: lint typecheck reference-models ## checks and tests (at most 15 minutes on
 test-long: setup-dev ## the tests that take longer
 	@$(TOOL) pytest -m long --timeout=3600 $(PYTEST_ARGS)
 
-lint: setup-dev ## ruff over everything: rules and format
+lint: setup-dev ## ruff (rules and format) and codespell over everything
 	@$(TOOL) ruff check --quiet .
 	@$(TOOL) ruff format --check --quiet .
+	@$(TOOL) codespell_lib
 
 typecheck: setup-dev ## mypy, strict, over all packages, scripts, benchmarks and generators
 	@$(TOOL) mypy $(TYPED)
