@@ -104,7 +104,8 @@ class Station:
         """Start a paused player of a recording."""
         inputs = summarise(bag).inputs
         arguments = (
-            'play', str(bag), '--station', self.name, '--start-paused', '--wait-timeout', '60',
+            'play', str(bag), '--station', self.name, '--start-paused', '--plate-blocks',
+            '--wait-timeout', '60',
             '--wait-for', *inputs,
         )  # fmt: skip
         self.player = start_module('player', 'lifting_cli.cli', self._logs, arguments=arguments)

@@ -134,7 +134,15 @@ EDGES = (
 )
 LABELS = (
     Label(247, 41, ('lift import',), 'what', 'middle'),
-    Label(626, 100, ('markers', 'force_plates/{right,left}/wrench', 'box/pose')),
+    Label(
+        626,
+        100,
+        (
+            'markers, box/pose',
+            'force_plates/{right,left}/wrench',
+            'force_plates/{right,left}/wrench_block',
+        ),
+    ),
     Label(20, 108, ('subject, task',)),
     Label(20, 124, ('from the bag to every node',), 'what'),
     Label(

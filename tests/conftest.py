@@ -59,7 +59,7 @@ def track(bag: Path) -> Tracked:
     from lifting_cli.session import summarise
     from lifting_node.conversions import subject_from_msg
     from lifting_recordings.reader import BagReader
-    from motion_tracker import conversions
+    from motion_tracker import inputs
     from motion_tracker.core import tracked
     from motion_tracker.core.configuration import tracker_from
 
@@ -72,18 +72,11 @@ def track(bag: Path) -> Tracked:
             defaults('motion_tracker'),
             subject_from_msg(subject),
             subject.marker_set,
-            *conversions.task_from_msg(task),
+            *inputs.task_from_msg(task),
         )
         names = [name for name in reader.topics if name.strip('/') in summary.inputs]
         for topic, _, message in reader.messages(names):
-            match topic.strip('/').split('/'):
-                case ['markers']:
-                    outputs += tracker.push_markers(*conversions.markers_from_msg(message))
-                case ['box', 'pose']:
-                    outputs += tracker.push_box(*conversions.box_from_msg(message))
-                case [_, side, 'wrench']:
-                    sample = conversions.wrench_from_msg(message)
-                    outputs += tracker.push_wrench(side, *sample)
+            outputs += inputs.push(tracker, topic.strip('/'), message)
         outputs += tracker.flush()
 
     def of(kind):

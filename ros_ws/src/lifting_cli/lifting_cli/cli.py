@@ -86,6 +86,9 @@ def _parser() -> argparse.ArgumentParser:
     play.add_argument('--station', default='', help='namespace of all topics')
     play.add_argument('--start-paused', action='store_true', help='wait for ~/pause false')
     play.add_argument(
+        '--plate-blocks', action='store_true', help='send plate samples in blocks, one a frame'
+    )
+    play.add_argument(
         '--wait-for', nargs='+', default=(), metavar='TOPIC', help='wait for a subscriber of each'
     )
     play.add_argument(
@@ -200,6 +203,7 @@ def _play(options: argparse.Namespace) -> int:
         start=options.start,
         namespace=options.station,
         start_paused=options.start_paused,
+        plate_blocks=options.plate_blocks,
         wait_for=dict.fromkeys(options.wait_for, 1),
         wait_timeout=options.wait_timeout,
     )

@@ -35,6 +35,7 @@ from lifting_node.parameters import load_table
 from lifting_recordings.reader import BagReader
 from lifting_report.results_writer import ResultsWriter
 from motion_tracker import conversions as tracker_messages
+from motion_tracker import inputs
 from motion_tracker.core import tracked
 from motion_tracker.core.configuration import tracker_from
 from motion_tracker.core.exceptions import MotionTrackerError
@@ -118,13 +119,8 @@ class OfflineGraph:
             return
         if self._tracker is None:
             self.samples_left_out += 1
-        elif topic == 'markers':
-            self._take(self._tracker.push_markers(*tracker_messages.markers_from_msg(message)))
-        elif topic == 'box/pose':
-            self._take(self._tracker.push_box(*tracker_messages.box_from_msg(message)))
         else:
-            side = topic.split('/')[1]
-            self._take(self._tracker.push_wrench(side, *tracker_messages.wrench_from_msg(message)))
+            self._take(inputs.push(self._tracker, topic, message))
 
     def _begin(self) -> None:
         if self._subject is None or self._task is None:
@@ -135,7 +131,7 @@ class OfflineGraph:
             self._tracker_values,
             subject,
             self._subject.marker_set,
-            *tracker_messages.task_from_msg(self._task),
+            *inputs.task_from_msg(self._task),
         )
         self._predictor.configure(self._tracker.subject)
         self._analyzer.configure(self._tracker.subject)

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from human_model.errors import HumanModelError
 from human_model.subject import Subject
@@ -15,11 +14,10 @@ from lifting_cli.session import summarise
 from lifting_node.conversions import subject_from_msg
 from lifting_node.parameters import load_table
 from lifting_recordings.reader import BagReader
-from motion_tracker import conversions
+from motion_tracker import inputs
 from motion_tracker.core.configuration import tracker_from
 from motion_tracker.core.exceptions import MotionTrackerError
-from motion_tracker.core.tracked import MeasuredLift, Output
-from motion_tracker.core.tracker import MotionTracker
+from motion_tracker.core.tracked import MeasuredLift
 
 
 @dataclass(frozen=True)
@@ -68,27 +66,16 @@ def recorded_lifts(bag: Path) -> RecordedLifts:
                 defaults,
                 subject_from_msg(latched['subject']),
                 latched['subject'].marker_set,
-                *conversions.task_from_msg(latched['task']),
+                *inputs.task_from_msg(latched['task']),
             )
             names = [name for name in reader.topics if name.strip('/') in summary.inputs]
             outputs = [
                 output
                 for topic, _, message in reader.messages(names)
-                for output in _push(tracker, topic.strip('/'), message)
+                for output in inputs.push(tracker, topic.strip('/'), message)
             ]
             outputs += tracker.flush()
         except (MotionTrackerError, HumanModelError) as error:
             raise SessionError(f'{bag}: {error}') from error
     found = tuple(output for output in outputs if isinstance(output, MeasuredLift))
     return RecordedLifts(summary.start, tracker.subject, found)
-
-
-def _push(tracker: MotionTracker, topic: str, message: Any) -> list[Output]:
-    match topic.split('/'):
-        case ['markers']:
-            return tracker.push_markers(*conversions.markers_from_msg(message))
-        case ['box', 'pose']:
-            return tracker.push_box(*conversions.box_from_msg(message))
-        case [_, side, 'wrench']:
-            return tracker.push_wrench(side, *conversions.wrench_from_msg(message))
-    return []

@@ -37,6 +37,7 @@ from lifting_cli.node_process import (
     start_module,
     stop_all,
 )
+from lifting_messages.plate_blocks import block_topic
 from lifting_node import qos
 from lifting_recordings.reader import BagReader
 
@@ -62,9 +63,9 @@ RESULT_TOPICS = (
 #: What the pictures are made of, recorded where it is asked for.
 VISUALIZATION_TOPICS = ('robot_description', 'visualization', '/tf', '/tf_static')
 
-PLATES = ('force_plates/right/wrench', 'force_plates/left/wrench')
+PLATES = tuple(f'force_plates/{side}/wrench' for side in ('right', 'left'))
 #: Topics the motion tracker reads.
-INPUTS = ('markers', 'box/pose', *PLATES)
+INPUTS = ('markers', 'box/pose', *PLATES, *map(block_topic, PLATES))
 
 #: Topics of the results that a graph may offer once a frame; the rest comes once a lift.
 _QOS = {'subject': qos.LATCHED, 'task': qos.LATCHED, 'spine_load': qos.FRAMES}
@@ -252,6 +253,7 @@ def _start_helpers(options: RunOptions, logs: Path, summary: BagSummary) -> list
             '--station',
             options.station,
             '--start-paused',
+            '--plate-blocks',
             '--wait-timeout',
             '600',
             '--wait-for',

@@ -4,19 +4,17 @@
 
 from __future__ import annotations
 
-import math
 import struct
 
 import numpy as np
-from geometry_msgs.msg import PointStamped, PoseStamped, WrenchStamped
-from lifting_interfaces.msg import BodyMotion, LiftEvent, Markers, MeasuredLift, Task
+from geometry_msgs.msg import PointStamped, WrenchStamped
+from lifting_interfaces.msg import BodyMotion, LiftEvent, MeasuredLift
 from sensor_msgs.msg import JointState
 
 from human_model.report import SolveStatus
 from human_model.subject import Subject
-from human_model.typing import Array
 from lifting_node.conversions import LABORATORY, MotionQuality, flat, lift_to_msg, motion_to_msg
-from lifting_node.stamps import to_seconds, to_stamp
+from lifting_node.stamps import to_stamp
 from motion_tracker.core.exceptions import TrackerError
 from motion_tracker.core.lift_events import LiftPhase
 from motion_tracker.core.tracked import FROM_BOX, DetectedEvent, TrackedFrame
@@ -29,29 +27,6 @@ _STAMP = struct.Struct('<iII')
 _DOUBLE = 8
 _WRENCH = struct.Struct('<6d')
 _POSE = struct.Struct('<7d')
-
-
-def markers_from_msg(message: Markers) -> tuple[float, list[str], Array]:
-    """Return stamp [s], names and positions (n, 3) [m] of a marker frame."""
-    names = [marker.marker_name for marker in message.markers]
-    positions = np.array(
-        [
-            (marker.translation.x, marker.translation.y, marker.translation.z)
-            for marker in message.markers
-        ],
-        dtype=np.float64,
-    ).reshape(-1, 3)
-    return to_seconds(message.header.stamp), names, positions
-
-
-def wrench_from_msg(message: WrenchStamped) -> tuple[float, Array, Array]:
-    """Return stamp [s], force [N] and moment about the laboratory's origin [N m] (3,)."""
-    force, moment = message.wrench.force, message.wrench.torque
-    return (
-        to_seconds(message.header.stamp),
-        np.array([force.x, force.y, force.z]),
-        np.array([moment.x, moment.y, moment.z]),
-    )
 
 
 def wrench_from_cdr(data: bytes) -> tuple[float, tuple[float, ...], tuple[float, ...]]:
@@ -67,12 +42,6 @@ def wrench_from_cdr(data: bytes) -> tuple[float, tuple[float, ...], tuple[float,
     """
     stamp, values = _stamped_from_cdr('wrench', data, _WRENCH)
     return stamp, values[:3], values[3:]
-
-
-def box_from_msg(message: PoseStamped) -> tuple[float, Array]:
-    """Return stamp [s] and centre of the box (3,) [m]."""
-    at = message.pose.position
-    return to_seconds(message.header.stamp), np.array([at.x, at.y, at.z])
 
 
 def box_from_cdr(data: bytes) -> tuple[float, tuple[float, ...]]:
@@ -93,19 +62,6 @@ def _stamped_from_cdr(
     if len(data) < begin + numbers.size:
         raise TrackerError(f'{name}: cut off after {len(data)} bytes')
     return seconds + nanoseconds / 1e9, numbers.unpack_from(data, begin)
-
-
-def task_from_msg(message: Task) -> tuple[float, Array]:
-    """Return mass [kg] and size (3,) [m] of the box.
-
-    Raises
-    ------
-    TrackerError
-        If the mass is negative or not finite.
-    """
-    if not (math.isfinite(message.box_mass) and message.box_mass >= 0):
-        raise TrackerError(f'task.box_mass: {message.box_mass} kg is no mass')
-    return float(message.box_mass), np.asarray(message.box_size, dtype=np.float64)
 
 
 def joint_state_to_msg(frame: TrackedFrame) -> JointState:

@@ -8,12 +8,20 @@ import time
 from collections import deque
 from collections.abc import Callable, Sequence
 from functools import partial
+from itertools import pairwise
 from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 from geometry_msgs.msg import PointStamped, PoseStamped, WrenchStamped
-from lifting_interfaces.msg import BodyMotion, LiftEvent, Markers, MeasuredLift, Task
+from lifting_interfaces.msg import (
+    BodyMotion,
+    LiftEvent,
+    Markers,
+    MeasuredLift,
+    Task,
+    WrenchBlock,
+)
 from lifting_interfaces.msg import Subject as SubjectMsg
 from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 from sensor_msgs.msg import JointState
@@ -21,11 +29,14 @@ from std_srvs.srv import Trigger
 
 from human_model.errors import HumanModelError
 from human_model.subject import Subject
+from human_model.typing import Array
+from lifting_messages import LiftingMessagesError, decode
+from lifting_messages.plate_blocks import BLOCK, block_samples
 from lifting_node import qos
 from lifting_node.conversions import subject_from_msg
 from lifting_node.pipeline_node import PipelineNode
 from lifting_node.run import run_node
-from motion_tracker import conversions
+from motion_tracker import conversions, inputs
 from motion_tracker.core.configuration import tracker_from
 from motion_tracker.core.exceptions import MotionTrackerError
 from motion_tracker.core.force_plates import SIDES
@@ -46,6 +57,8 @@ STREAMS: Final = {
     'box': 'box/pose',
     **{side: f'force_plates/{side}/wrench' for side in SIDES},
 }
+#: Topics of the plates' samples in blocks.
+BLOCKS: Final = {side: f'force_plates/{side}/wrench_block' for side in SIDES}
 
 #: Marker frames between two reports of refused input.
 COUNT_FRAMES: Final = 500
@@ -57,7 +70,7 @@ class MotionTrackerNode(PipelineNode):
     """Tracks the person at one station; the namespace is the station."""
 
     PACKAGE = 'motion_tracker'
-    INPUT_ERRORS = (MotionTrackerError, HumanModelError)
+    INPUT_ERRORS = (MotionTrackerError, HumanModelError, LiftingMessagesError)
     LATER = ('scipy.signal', 'scipy.interpolate')
 
     def build(self) -> None:
@@ -90,6 +103,9 @@ class MotionTrackerNode(PipelineNode):
             self.subscribe(
                 WrenchStamped, STREAMS[side], partial(self._on_wrench, side), qos.PLATES, raw=True
             )
+            self.subscribe(
+                WrenchBlock, BLOCKS[side], partial(self._on_block, side), qos.PLATES, raw=True
+            )
         self._flush_service = self.create_service(Trigger, '~/flush', self._on_flush)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -111,7 +127,7 @@ class MotionTrackerNode(PipelineNode):
         self._work_off_early()
 
     def _on_task(self, message: Task) -> None:
-        task = conversions.task_from_msg(message)
+        task = inputs.task_from_msg(message)
         if (
             self._task is not None
             and self._task[0] == task[0]
@@ -137,6 +153,14 @@ class MotionTrackerNode(PipelineNode):
         stamp, force, moment = conversions.wrench_from_cdr(data)
         self._take(side, stamp, lambda tracker: tracker.push_wrench(side, stamp, force, moment))
 
+    def _on_block(self, side: str, data: bytes) -> None:
+        stamps, samples = block_samples(decode(data, BLOCK))
+        if all(before < after for before, after in pairwise(stamps)):
+            self._take(side, stamps[0], _block_feed(side, stamps, samples))
+            return
+        for k, stamp in enumerate(stamps):
+            self._take(side, stamp, _block_feed(side, [stamp], samples[k : k + 1]))
+
     def _take(self, stream: str, stamp: float, feed: Feed) -> None:
         """Feed one sample to the tracker of its recording."""
         if not self.active:
@@ -144,7 +168,9 @@ class MotionTrackerNode(PipelineNode):
             return
         if self._segmenter.idle:
             self._segmenter.expect(
-                name for name, topic in STREAMS.items() if self.count_publishers(topic)
+                name
+                for name, topic in (*STREAMS.items(), *BLOCKS.items())
+                if self.count_publishers(topic)
             )
         self._feed(self._segmenter.push(stream, stamp, feed))
 
@@ -264,6 +290,10 @@ class MotionTrackerNode(PipelineNode):
                 point = self._writer.cop(frame, side)
                 if point is not None:
                     publisher.publish(point)
+
+
+def _block_feed(side: str, stamps: list[float], samples: Array) -> Feed:
+    return lambda tracker: tracker.push_wrenches(side, stamps, samples)
 
 
 def main(args: list[str] | None = None) -> None:

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from lifting_interfaces.msg import Marker, Markers
 from rclpy.serialization import serialize_message
 
-from motion_tracker.conversions import markers_from_msg
 from motion_tracker.core.exceptions import TrackerError
+from motion_tracker.inputs import markers_from_msg
 from motion_tracker.marker_cdr import MarkerReader
 
 NUMBER = st.floats(-10.0, 10.0) | st.just(np.nan)

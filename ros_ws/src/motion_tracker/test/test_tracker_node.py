@@ -31,7 +31,7 @@ from std_srvs.srv import Trigger  # noqa: E402
 from human_model.report import SolveStatus  # noqa: E402
 from lifting_node import qos  # noqa: E402
 from lifting_node.conversions import lift_from_msg, subject_from_msg  # noqa: E402
-from motion_tracker import conversions  # noqa: E402
+from motion_tracker import inputs  # noqa: E402
 from motion_tracker.core.configuration import tracker_from  # noqa: E402
 from motion_tracker.core.tracked import MeasuredLift as TrackedLift  # noqa: E402
 from motion_tracker.core.tracked import TrackedFrame  # noqa: E402
@@ -134,18 +134,11 @@ def offline(recording, values):
         values,
         subject_from_msg(subject),
         subject.marker_set,
-        *conversions.task_from_msg(messages['task']),
+        *inputs.task_from_msg(messages['task']),
     )
     outputs = []
     for topic, message in recording[2:]:
-        if topic == 'markers':
-            outputs += tracker.push_markers(*conversions.markers_from_msg(message))
-        elif topic == 'box/pose':
-            outputs += tracker.push_box(*conversions.box_from_msg(message))
-        else:
-            outputs += tracker.push_wrench(
-                topic.split('/')[1], *conversions.wrench_from_msg(message)
-            )
+        outputs += inputs.push(tracker, topic, message)
     return outputs + tracker.flush()
 
 

@@ -88,6 +88,31 @@ def test_one_lift_comes_out_with_its_events(outputs):
     assert measured.lift.end - window.time[-1] < 0.01
 
 
+def test_plate_samples_in_blocks_give_the_same_bits(outputs, lift, tracker, solver):
+    sides = {m[0] for stream in lift for m in stream} - {'markers', 'box'}
+    messages = [m for stream in lift for m in stream if m[0] not in sides]
+    for side in sides:
+        plate = [m for stream in lift for m in stream if m[0] == side]
+        messages += [(side, plate[k][1], plate[k : k + 7]) for k in range(0, len(plate), 7)]
+    got = []
+    for message in sorted(messages, key=lambda m: m[1]):
+        if message[0] in sides:
+            samples = message[2]
+            rows = np.array([[*force, *moment] for _, _, force, moment in samples])
+            got += tracker.push_wrenches(message[0], [m[1] for m in samples], rows)
+        else:
+            got += feed_one(tracker, message, solver.model.names)
+    got += tracker.flush()
+    for one, other in zip(of(TrackedFrame, outputs), of(TrackedFrame, got), strict=True):
+        assert one.status == other.status
+        for name in ('position', 'acceleration', 'ground_force', 'free_moment', 'hand_force'):
+            np.testing.assert_array_equal(
+                getattr(one.motion, name), getattr(other.motion, name), err_msg=name
+            )
+    (one,), (other,) = of(MeasuredLift, outputs), of(MeasuredLift, got)
+    np.testing.assert_array_equal(one.lift.motion.ground_force, other.lift.motion.ground_force)
+
+
 def test_live_samples_are_stamped_with_their_own_time(outputs, lift, tracker):
     frames = of(TrackedFrame, outputs)
     assert len(frames) == len(lift[0])

@@ -12,8 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rclpy.serialization import serialize_message
 
-from motion_tracker.conversions import box_from_cdr, box_from_msg, wrench_from_cdr, wrench_from_msg
+from motion_tracker.conversions import box_from_cdr, wrench_from_cdr
 from motion_tracker.core.exceptions import TrackerError
+from motion_tracker.inputs import box_from_msg, wrench_from_msg
 
 NUMBER = st.floats(-1e4, 1e4)
 

@@ -44,6 +44,9 @@ class PlayOptions:
         that has stopped taking messages.
     play_alarms : bool
         Also play stored alarms.
+    plate_blocks : bool
+        Send the samples of a force plate in blocks, one for each camera frame, on the topic
+        beside that of single samples (`lifting_interfaces/WrenchBlock`).
     """
 
     bag: Path
@@ -58,6 +61,7 @@ class PlayOptions:
     wait_timeout: float = 20.0
     ack_timeout: float = 30.0
     play_alarms: bool = False
+    plate_blocks: bool = False
 
     def __post_init__(self) -> None:
         """Refuse impossible numbers."""

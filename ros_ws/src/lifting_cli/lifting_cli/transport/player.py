@@ -26,11 +26,14 @@ from std_srvs.srv import SetBool
 from lifting_cli.transport.play_options import PlayControl, PlayOptions, PlayReport
 from lifting_cli.transport.qos import message_class, publisher_profile
 from lifting_cli.transport.ros_context import own_node
+from lifting_messages.plate_blocks import BLOCK, block_topic, in_blocks, is_plate
 from lifting_recordings.exceptions import PlaybackError
 from lifting_recordings.reader import BagReader, BagTopic
 
 # Alarms in a bag are history: played again they would raise the plant's alarms a second time.
 HISTORY_TYPES = ('lifting_interfaces/msg/AlarmEvent',)
+# A block of plate samples ends with a message of these.
+FRAME_TYPES = ('lifting_interfaces/msg/Markers',)
 _CLOCK_TOPIC = '/clock'
 _EARLY_NS = 100_000
 _POLL_SECONDS = 0.02
@@ -80,6 +83,11 @@ class _Playback:
     ) -> None:
         self._options, self._control, self._bag, self._node = options, control, bag, node
         self._skipped: dict[str, str] = {}
+        self._plates = {
+            name
+            for name, topic in bag.topics.items()
+            if options.plate_blocks and is_plate(name, topic.msgtype)
+        }
         if bag.loss is not None:
             say(f'{bag.path}: {bag.loss}')
         self._publishers = self._make_publishers(say)
@@ -108,8 +116,11 @@ class _Playback:
                 self._skipped[name] = reason
                 say(f'{name} is not played: {reason}')
                 continue
+            msgtype = topic.msgtype
+            if name in self._plates:
+                full, msgtype = block_topic(full), BLOCK
             publishers[name] = self._node.create_publisher(
-                message_class(topic.msgtype), self._resolve(full), publisher_profile(topic.qos)
+                message_class(msgtype), self._resolve(full), publisher_profile(topic.qos)
             )
         return publishers
 
@@ -204,10 +215,16 @@ class _Playback:
                 f'{self._bag.path}: no message after {self._options.start:g} s '
                 f'(the bag is {(self._bag.end_ns - self._bag.start_ns) * 1e-9:g} s long)'
             )
-        if self._bag.size <= _HELD_IN_MEMORY:
-            held = [*before.values(), *self._bag.raw_messages(topics, start)]
-            return lambda: held
-        return lambda: chain(before.values(), self._bag.raw_messages(topics, start))
+        frames = [name for name in topics if self._bag.topics[name].msgtype in FRAME_TYPES]
+
+        def turn() -> Iterable[tuple[str, int, bytes]]:
+            messages = chain(before.values(), self._bag.raw_messages(topics, start))
+            return in_blocks(messages, self._plates, frames) if self._plates else messages
+
+        if self._bag.size > _HELD_IN_MEMORY:
+            return turn
+        held = list(turn())
+        return lambda: held
 
     def _play_once(self, messages: Iterable[tuple[str, int, bytes]]) -> None:
         control, rate = self._control, self._options.rate

@@ -184,14 +184,40 @@ class MotionTracker:
         moment: Sequence[float] | Array,
     ) -> list[Output]:
         """Take one sample of a force plate: force [N] and moment about its origin [N m] (3,)."""
-        stream = self._wrenches.get(side)
-        if stream is None:
-            raise TrackerError(f'plate {side!r}: sides are {", ".join(SIDES)}')
+        stream = self._wrench_stream(side)
         sample = (*force, *moment)
         if len(sample) != _WRENCH:
             raise TrackerError(f'{stream.name}: force and moment have {len(sample)} components')
         stream.push(stamp, sample)
         return self._process(self._reaches_frame(stream))
+
+    def push_wrenches(self, side: str, stamps: Sequence[float], samples: Array) -> list[Output]:
+        """Take samples of a force plate at increasing stamps: the same as one after the other.
+
+        Parameters
+        ----------
+        side : str
+            Of the plate.
+        stamps : sequence of float, n
+            [s].
+        samples : ndarray, shape (n, 6)
+            Force [N] and moment about the plate's origin [N m].
+
+        Raises
+        ------
+        TrackerError
+            If there is no such plate.
+        """
+        stream = self._wrench_stream(side)
+        for stamp, sample in zip(stamps, samples.tolist(), strict=True):
+            stream.push(stamp, sample)
+        return self._process(self._reaches_frame(stream))
+
+    def _wrench_stream(self, side: str) -> SampledStream:
+        stream = self._wrenches.get(side)
+        if stream is None:
+            raise TrackerError(f'plate {side!r}: sides are {", ".join(SIDES)}')
+        return stream
 
     def push_box(self, stamp: float, position: Sequence[float] | Array) -> list[Output]:
         """Take one position of the box's centre (3,), world [m]."""

@@ -1,0 +1,83 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Messages of the tracker's inputs, of a running graph or of a recording."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from human_model.typing import Array
+from lifting_messages import Message
+from lifting_messages.plate_blocks import block_samples
+from motion_tracker.core.exceptions import TrackerError
+from motion_tracker.core.tracked import Output
+from motion_tracker.core.tracker import MotionTracker
+
+
+def push(tracker: MotionTracker, topic: str, message: Message) -> list[Output]:
+    """Pass a sample of an input topic to a tracker; return what it gives out.
+
+    Raises
+    ------
+    TrackerError
+        If the tracker refuses the sample, or the topic is none of its inputs.
+    """
+    match topic.split('/'):
+        case ['markers']:
+            return tracker.push_markers(*markers_from_msg(message))
+        case ['box', 'pose']:
+            return tracker.push_box(*box_from_msg(message))
+        case ['force_plates', side, 'wrench']:
+            return tracker.push_wrench(side, *wrench_from_msg(message))
+        case ['force_plates', side, 'wrench_block']:
+            return tracker.push_wrenches(side, *block_samples(message))
+    raise TrackerError(f'{topic}: the tracker has no such input')
+
+
+def markers_from_msg(message: Message) -> tuple[float, list[str], Array]:
+    """Return stamp [s], names and positions (n, 3) [m] of a marker frame."""
+    names = [marker.marker_name for marker in message.markers]
+    positions = np.array(
+        [
+            (marker.translation.x, marker.translation.y, marker.translation.z)
+            for marker in message.markers
+        ],
+        dtype=np.float64,
+    ).reshape(-1, 3)
+    return _seconds(message), names, positions
+
+
+def wrench_from_msg(message: Message) -> tuple[float, Array, Array]:
+    """Return stamp [s], force [N] and moment about the laboratory's origin [N m] (3,)."""
+    force, moment = message.wrench.force, message.wrench.torque
+    return (
+        _seconds(message),
+        np.array([force.x, force.y, force.z]),
+        np.array([moment.x, moment.y, moment.z]),
+    )
+
+
+def box_from_msg(message: Message) -> tuple[float, Array]:
+    """Return stamp [s] and centre of the box (3,) [m]."""
+    at = message.pose.position
+    return _seconds(message), np.array([at.x, at.y, at.z])
+
+
+def task_from_msg(message: Message) -> tuple[float, Array]:
+    """Return mass [kg] and size (3,) [m] of the box.
+
+    Raises
+    ------
+    TrackerError
+        If the mass is negative or not finite.
+    """
+    if not (math.isfinite(message.box_mass) and message.box_mass >= 0):
+        raise TrackerError(f'task.box_mass: {message.box_mass} kg is no mass')
+    return float(message.box_mass), np.asarray(message.box_size, dtype=np.float64)
+
+
+def _seconds(message: Message) -> float:
+    stamp = message.header.stamp
+    return float(stamp.sec) + float(stamp.nanosec) / 1e9
