@@ -5,6 +5,11 @@
 from __future__ import annotations
 
 import ast
+import importlib
+import subprocess
+import sys
+from collections.abc import Container
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -69,3 +74,66 @@ def test_cores_know_no_ros(folder: str) -> None:
     for path in files:
         wrong = {name for name in imported(path) if name in ROS or name.endswith('_msgs')}
         assert not wrong, f'{path.relative_to(SOURCES)} imports {sorted(wrong)}'
+
+
+def module_name(path: Path) -> str:
+    """Return the dotted name of a module of one of the packages."""
+    parts = path.relative_to(SOURCES).with_suffix('').parts[1:]
+    return '.'.join(parts[:-1] if parts[-1] == '__init__' else parts)
+
+
+def imported_modules(path: Path, modules: Container[str]) -> set[str]:
+    """Return the modules of the project that a module imports when it is itself imported."""
+    found = set()
+    for node in ast.parse(path.read_text(encoding='utf-8')).body:
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            found |= {node.module, *(f'{node.module}.{alias.name}' for alias in node.names)}
+    return {name for name in found if name in modules}
+
+
+def project_imports() -> dict[str, set[str]]:
+    """Return the imports of every module of the packages."""
+    paths = {
+        module_name(path): path
+        for package in (*MAY_IMPORT, 'lifting_cli')
+        for path in (SOURCES / package / package).rglob('*.py')
+    }
+    return {name: imported_modules(path, paths) - {name} for name, path in paths.items()}
+
+
+def test_no_import_circle() -> None:
+    try:
+        TopologicalSorter(project_imports()).prepare()
+    except CycleError as error:
+        pytest.fail(f'import circle: {" -> ".join(error.args[1])}')
+
+
+def test_cores_import_nothing_above_them() -> None:
+    """A module of a core imports of its own package only the core, and of others no node."""
+    for name, imports in project_imports().items():
+        package, *rest = name.split('.')
+        if rest[:1] != ['core']:
+            continue
+        wrong = {
+            other
+            for other in imports
+            if other.split('.')[0] == package and other.split('.')[1:2] not in ([], ['core'])
+        }
+        assert not wrong, f'{name} imports {sorted(wrong)}'
+
+
+@pytest.mark.parametrize('package', ['injury_monitor', 'motion_tracker'])
+def test_exported_names_exist_and_load_at_their_first_use(package: str) -> None:
+    heavy = {'numpy', 'numba', 'scipy'}
+    code = f'import sys, {package}; print(sorted({heavy} & set(sys.modules)))'
+    answer = subprocess.run(
+        [sys.executable, '-c', code], capture_output=True, text=True, check=True
+    )
+    assert answer.stdout.strip() == '[]'
+    module = importlib.import_module(package)
+    for name in module.__all__:
+        assert getattr(module, name).__name__ == name
+    with pytest.raises(AttributeError, match='no_such_name'):
+        _ = module.no_such_name

@@ -28,9 +28,7 @@ RATE = 100.0
 
 
 def monitor(work=WORK, **options):
-    result = InjuryMonitor('cell_1', **options)
-    result.configure(work)
-    return result
+    return InjuryMonitor('cell_1', work=work, **options)
 
 
 def lift(peak, duration=2.0, rest=600.0, before=1.0, after=2.0):

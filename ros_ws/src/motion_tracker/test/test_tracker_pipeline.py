@@ -4,11 +4,13 @@
 
 import numpy as np
 import pytest
+import yaml
 
 from human_model.report import SolveStatus
 from motion_tracker.core.configuration import settings_from, tracker_from
 from motion_tracker.core.exceptions import MotionTrackerError, TrackerError
 from motion_tracker.core.lift_events import LiftPhase
+from motion_tracker.core.marker_set import DATA
 from motion_tracker.core.tracked import (
     FROM_BOX,
     FROM_HANDS,
@@ -24,6 +26,12 @@ from motion_tracker.core.tracker import MotionTracker
 START = 1.7e9
 MASS, SIZE = 10.0, (0.3, 0.3, 0.2)
 GRAVITY = 9.80665
+
+
+def default_parameters():
+    """Return the parameters of the node with their default values."""
+    table = yaml.safe_load((DATA / 'parameters.yaml').read_text(encoding='utf-8'))
+    return {name: row['default'] for name, row in table.items()}
 
 
 def feed_one(tracker, message, names):
@@ -341,26 +349,17 @@ def test_filters_settle_where_a_recording_begins_in_motion(
 
 
 def test_several_recordings_count_on(person, marker_set, lift, solver):
-    values = {
-        'marker_set': '',
-        'motion_cutoff': 6.0,
-        'plate_cutoff': 25.0,
-        'force_threshold': 20.0,
-        'plate_surface_height': 0.0,
-        'wait': 2.0,
-        'longest_gap': 0.1,
-        'margin': 0.5,
-        'mass_tolerance': 0.05,
-        'minimum_rise': 0.05,
-        'minimum_body_rise': 0.03,
-        'rest_speed': 0.03,
-    }
+    values = default_parameters()
     second = tracker_from(values, person, marker_set.name, MASS, SIZE, first_lift=5)
     outputs = feed(second, in_order(*lift), solver.model.names)
     assert {e.lift_id for e in of(DetectedEvent, outputs)} == {'lift_005'}
     assert second.lifts == 5
     with pytest.raises(MotionTrackerError, match='margin'):
         settings_from(values | {'margin': -1.0})
+
+
+def test_default_parameters_are_the_default_settings():
+    assert settings_from(default_parameters()) == TrackerSettings()
 
 
 def test_recording_without_a_rise_has_no_lift(tracker, lift, solver):

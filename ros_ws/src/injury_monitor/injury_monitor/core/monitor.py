@@ -85,6 +85,8 @@ class InjuryMonitor:
         Longest shelving [s].
     known : iterable of str
         Occurrences announced earlier, for example from the journal.
+    work : Work, optional
+        Person and task; otherwise `configure` sets them later.
     """
 
     def __init__(
@@ -95,6 +97,7 @@ class InjuryMonitor:
         activation_window: float = DEFAULT_WINDOW,
         max_shelve: float = DEFAULT_MAX_SHELVE,
         known: Iterable[str] = (),
+        work: Work | None = None,
     ) -> None:
         self.station = station
         self.settings = tuple(read_alarm_settings() if settings is None else settings)
@@ -109,9 +112,11 @@ class InjuryMonitor:
         self._stamps: dict[str, float] = {}
         self._alarms: dict[str, StationAlarm] = {}
         self._by_quantity: dict[str, list[StationAlarm]] = {}
+        if work is not None:
+            self.configure(work)
 
     def configure(self, work: Work) -> LimitSet:
-        """Put person and task in force; alarms keep their state, their limits may change.
+        """Set person and task; alarms keep their state, their limits may change.
 
         Returns
         -------
