@@ -25,7 +25,7 @@ import numpy as np
 from benchmarks.random_tasks import random_case
 from benchmarks.spatial_referee import Referee, Refereed
 
-from human_model.errors import HumanModelError
+from human_model.exceptions import HumanModelError
 from human_model.motion import BodyMotion, Lift
 from human_model.named_subjects import named_subject
 from human_model.report import SolveReport

@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from human_model.errors import HumanModelError
+from human_model.exceptions import HumanModelError
 from human_model.subject import Subject
 from lift_predictor.core.exceptions import LiftPredictorError
 from lift_predictor.core.planning.build import Plan, build_plan

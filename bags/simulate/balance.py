@@ -11,12 +11,13 @@ motion is solved again, a few times.
 from __future__ import annotations
 
 import numpy as np
-from bags.simulate.forces import GRAVITY, whole_wrench
+from bags.simulate.forces import whole_wrench
 from bags.simulate.motion import SOLVE_RATE, MotionBuilder, SimulatedMotion
 from bags.simulate.tasks import Task
 from scipy.linalg import solve_banded
 from scipy.signal import butter, sosfiltfilt
 
+from human_model.constants import GRAVITY
 from human_model.typing import Array
 
 # How far the centre of pressure may swing about its resting place, forward and sideways [m];

@@ -23,10 +23,10 @@ from bags.simulate.profiles import quintic
 from bags.simulate.tasks import Stage
 
 from human_model import compiled
+from human_model.constants import GRAVITY
 from human_model.skeleton import ExternalForce
 from human_model.typing import Array
 
-GRAVITY = 9.80665
 _PELVIS_TRANSLATIONS = 3
 
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from human_model.errors import AnthropometryError
+from human_model.exceptions import AnthropometryError
 from human_model.frames import ROS_FROM_OPENSIM
 from human_model.inertia import combine, positive_inertia, rotate
 from human_model.subject import Subject

@@ -11,12 +11,9 @@ over bodies allocate nothing.
 
 import numpy as np
 
-from human_model import constants
 from human_model.compiled_cache import njit
 from human_model.tree import TreeArrays
 from human_model.typing import Array, IntArray
-
-GRAVITY = constants.GRAVITY
 
 _PRISMATIC = 1
 

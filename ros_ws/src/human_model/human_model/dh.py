@@ -14,7 +14,7 @@ from math import pi
 import numpy as np
 import numpy.typing as npt
 
-from human_model.errors import ChainError
+from human_model.exceptions import ChainError
 from human_model.tables import length_sum, read_table
 from human_model.typing import Array
 

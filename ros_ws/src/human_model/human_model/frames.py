@@ -10,7 +10,7 @@ Quaternions are ``(x, y, z, w)`` as in ROS messages, of unit length.
 import numpy as np
 import numpy.typing as npt
 
-from human_model.errors import HumanModelError
+from human_model.exceptions import HumanModelError
 from human_model.typing import Array
 
 #: Rows: the REP-103 axes written in OpenSim's axes; ``v_ros = ROS_FROM_OPENSIM @ v_osim``.

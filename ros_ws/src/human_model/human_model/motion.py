@@ -12,12 +12,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from human_model.errors import MotionError
+from human_model.exceptions import MotionError
 from human_model.report import SolveReport
 from human_model.typing import Array
 
 SKELETONS = ('2d_10dof', '3d_40dof')
-SIDES = ('right', 'left')
 
 #: The shared points of the body [m], in this order; pairs are right, then left.
 POINTS = (

@@ -21,7 +21,7 @@ from human_model.anthropometry import (
     segment_lengths,
     segment_parameters,
 )
-from human_model.errors import SubjectError
+from human_model.exceptions import SubjectError
 from human_model.subject import Subject
 from human_model.tables import length_sum, read_table
 

@@ -17,7 +17,7 @@ import numpy.typing as npt
 from human_model.anthropometry import SegmentParameters
 from human_model.constants import GRAVITY
 from human_model.dh import Chain
-from human_model.errors import ChainError
+from human_model.exceptions import ChainError
 from human_model.tree import row_segments
 from human_model.typing import Array
 

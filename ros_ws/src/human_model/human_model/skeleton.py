@@ -14,7 +14,7 @@ from human_model import tree_kinematics
 from human_model.anthropometry import SegmentParameters
 from human_model.constants import GRAVITY
 from human_model.dh import Chain, load_chain
-from human_model.errors import ChainError, MotionError
+from human_model.exceptions import ChainError, MotionError
 from human_model.frames import quaternion_from_matrix
 from human_model.motion import FRAMES, POINTS, BodyMotion
 from human_model.tables import length_sum, read_table

@@ -21,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from human_model.constants import GRAVITY
-from human_model.errors import StrengthError
+from human_model.exceptions import StrengthError
 from human_model.subject import Subject
 from human_model.tables import read_table
 from human_model.typing import Array

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from human_model.errors import SubjectError
+from human_model.exceptions import SubjectError
 
 SEXES = ('male', 'female')
 

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from functools import cache
 from importlib.resources import files
 
-from human_model.errors import HumanModelError
+from human_model.exceptions import HumanModelError
 
 _TERM = re.compile(r'([+-]?)\s*([A-Za-z0-9_.]+)')
 

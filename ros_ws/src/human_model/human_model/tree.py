@@ -21,7 +21,7 @@ import numpy as np
 
 from human_model.anthropometry import SegmentParameters
 from human_model.dh import Chain
-from human_model.errors import ChainError
+from human_model.exceptions import ChainError
 from human_model.typing import Array, BoolArray, IntArray
 
 REVOLUTE = 0

@@ -9,7 +9,7 @@ package's chain table, so an error there shows.
 import numpy as np
 import pytest
 
-from human_model.compiled import GRAVITY
+from human_model.constants import GRAVITY
 from human_model.skeleton import ExternalForce
 
 pin = pytest.importorskip('pinocchio', reason='Pinocchio (package pin) is not installed')

@@ -14,7 +14,7 @@ from human_model.anthropometry import (
     segment_lengths,
     segment_parameters,
 )
-from human_model.errors import AnthropometryError, HumanModelError
+from human_model.exceptions import AnthropometryError, HumanModelError
 from human_model.inertia import combine, positive_inertia, rotate, shift
 from human_model.skeleton_3d import Skeleton3D
 from human_model.subject import Calibration, Subject

@@ -10,7 +10,7 @@ import pytest
 
 from human_model import dh
 from human_model.dh import DHRow, dh_transform, load_chain
-from human_model.errors import ChainError
+from human_model.exceptions import ChainError
 
 UP, DOWN, FORWARD, BACK = (2, 1), (2, -1), (0, 1), (0, -1)
 LEFT, RIGHT = (1, 1), (1, -1)

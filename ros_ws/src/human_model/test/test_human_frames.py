@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from human_model import compiled_quaternions, frames
-from human_model.errors import HumanModelError
+from human_model.exceptions import HumanModelError
 
 components = st.floats(-1e3, 1e3)
 vectors = st.tuples(components, components, components).map(np.array)

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from human_model.errors import MotionError
+from human_model.exceptions import MotionError
 from human_model.motion import BodyMotion, Lift, concatenate
 from human_model.report import SolveReport
 

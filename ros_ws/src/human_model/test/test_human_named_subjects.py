@@ -5,7 +5,7 @@
 import numpy as np
 import pytest
 
-from human_model.errors import SubjectError
+from human_model.exceptions import SubjectError
 from human_model.named_subjects import named_parameters, named_subject, subject_names
 from human_model.skeleton_2d import Skeleton2D
 from human_model.skeleton_3d import Skeleton3D

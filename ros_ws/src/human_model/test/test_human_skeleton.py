@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from human_model import compiled
-from human_model.errors import AnthropometryError, ChainError, MotionError
+from human_model.exceptions import AnthropometryError, ChainError, MotionError
 from human_model.frames import matrix_from_quaternion
 from human_model.motion import FRAMES, POINTS
 from human_model.skeleton_2d import Skeleton2D

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from human_model.compiled import GRAVITY
-from human_model.errors import StrengthError
+from human_model.constants import GRAVITY
+from human_model.exceptions import StrengthError
 from human_model.skeleton_3d import Skeleton3D
 from human_model.strength import (
     LARGE,

@@ -5,7 +5,7 @@
 import numpy as np
 import pytest
 
-from human_model.errors import SubjectError
+from human_model.exceptions import SubjectError
 from human_model.report import SolveReport, SolveStatus
 from human_model.subject import Calibration, Subject
 

@@ -17,7 +17,7 @@ from rclpy.action.server import ServerGoalHandle
 from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 from trajectory_msgs.msg import JointTrajectory
 
-from human_model.errors import HumanModelError
+from human_model.exceptions import HumanModelError
 from human_model.motion import Lift
 from human_model.subject import Subject
 from lift_predictor import conversions

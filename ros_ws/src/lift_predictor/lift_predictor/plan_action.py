@@ -12,7 +12,7 @@ from rclpy.action import ActionServer, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.node import Node
 
-from human_model.errors import HumanModelError
+from human_model.exceptions import HumanModelError
 from human_model.subject import Subject
 from lift_predictor import conversions
 from lift_predictor.background import Background

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from human_model.compiled import GRAVITY
+from human_model.constants import GRAVITY
 from human_model.skeleton import ExternalForce
 from human_model.subject import Subject
 from lift_predictor.core.spatial.coordinates import skeleton_motion

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from human_model.errors import HumanModelError
+from human_model.exceptions import HumanModelError
 from lifting_cli.graph_errors import SessionError
 from lifting_cli.recorded_lifts import recorded_lifts
 from lifting_report.emg_page import build_emg_page

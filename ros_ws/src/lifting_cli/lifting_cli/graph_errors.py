@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Errors of the running graph."""
 
+from human_model.exceptions import LiftingError
 
-class GraphError(RuntimeError):
+
+class GraphError(LiftingError, RuntimeError):
     """Base of what can go wrong while the graph runs."""
 
 

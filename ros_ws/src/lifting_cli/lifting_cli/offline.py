@@ -12,7 +12,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from human_model.errors import HumanModelError
+from human_model.exceptions import HumanModelError
 from human_model.report import SolveStatus
 from injury_monitor import conversions as monitor_messages
 from injury_monitor.core.exceptions import InjuryMonitorError

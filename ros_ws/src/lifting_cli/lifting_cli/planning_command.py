@@ -39,7 +39,7 @@ def add_to(commands: Any) -> None:
 
 def _run(options: argparse.Namespace) -> int:
     # Loads for long; the other commands need none of it.
-    from human_model.errors import HumanModelError
+    from human_model.exceptions import HumanModelError
     from lift_predictor.core.exceptions import LiftPredictorError
     from lift_predictor.core.maximum_weight import Weighting
     from lift_predictor.core.planning.planner import LiftPlanner

@@ -7,7 +7,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from human_model.errors import HumanModelError
+from human_model.exceptions import HumanModelError
 from human_model.subject import Subject
 from lifting_cli.graph_errors import SessionError
 from lifting_cli.session import summarise

@@ -23,7 +23,7 @@ def add_to(commands: Any) -> None:
 
 def _run(options: argparse.Namespace) -> int:
     # Loads for long; the other commands need none of it.
-    from human_model.errors import HumanModelError
+    from human_model.exceptions import HumanModelError
     from human_model.urdf import person_urdf
     from lifting_recordings.static_trial import person
     from lifting_recordings.subject_file import read_person

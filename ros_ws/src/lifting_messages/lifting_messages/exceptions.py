@@ -4,8 +4,10 @@
 
 from __future__ import annotations
 
+from human_model.exceptions import LiftingError
 
-class LiftingMessagesError(ValueError):
+
+class LiftingMessagesError(LiftingError, ValueError):
     """Base of every error this package raises on bad input."""
 
 

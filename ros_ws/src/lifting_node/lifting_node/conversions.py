@@ -92,7 +92,7 @@ def subject_from_msg(message: SubjectMsg) -> Subject:
 
     Raises
     ------
-    human_model.errors.SubjectError
+    human_model.exceptions.SubjectError
         If a value is out of range or arrays do not belong together.
     """
     calibration = None
@@ -178,7 +178,7 @@ def motion_from_msg(message: BodyMotionMsg) -> BodyMotion:
 
     Raises
     ------
-    human_model.errors.MotionError
+    human_model.exceptions.MotionError
         If arrays do not have the sizes that the names and the time call for, or are not finite.
     """
     time = to_seconds(message.header.stamp) + np.asarray(message.time_from_start)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from lifting_interfaces.msg import SolveReport as SolveReportMsg
 
-from human_model.errors import MotionError, SubjectError
+from human_model.exceptions import MotionError, SubjectError
 from human_model.motion import FRAMES, POINTS, BodyMotion, Lift
 from human_model.report import SolveReport, SolveStatus
 from human_model.subject import Calibration, Subject

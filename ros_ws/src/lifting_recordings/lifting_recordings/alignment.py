@@ -9,15 +9,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from human_model.constants import GRAVITY, SIDES
 from human_model.typing import Array
 from lifting_recordings import conventions
 from lifting_recordings.exceptions import ConventionError
 from lifting_recordings.marker_roles import MarkerRoles
 from lifting_recordings.plate_assignment import assign_plates, orient_plates
-from lifting_recordings.recording import SIDES, Plate, RawRecording, Recording
+from lifting_recordings.recording import Plate, RawRecording, Recording
 
-# Standard gravity [m/s^2], CGPM 1901.
-GRAVITY = 9.80665
 # Body weight on the plates against the entered mass, as a share.
 MASS_TOLERANCE = 0.05
 _QUIET_SECONDS = 1.0

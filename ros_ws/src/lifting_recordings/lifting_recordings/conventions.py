@@ -10,11 +10,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from human_model.constants import SIDES
 from human_model.typing import Array
 from lifting_recordings.exceptions import ConventionError
 from lifting_recordings.marker_roles import MarkerRoles
 from lifting_recordings.plate_assignment import LOADED
-from lifting_recordings.recording import SIDES, Plate
+from lifting_recordings.recording import Plate
 
 UNIT_METRES = {'m': 1.0, 'mm': 1e-3, 'cm': 1e-2}
 AXES = {

@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Errors of bag import, reading, playing and recording."""
 
+from human_model.exceptions import LiftingError
 
-class BagError(Exception):
+
+class BagError(LiftingError):
     """Base of every error raised by this sub-package."""
 
 

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from human_model.constants import SIDES
 from human_model.typing import Array
 from lifting_recordings.alignment import ConventionOptions, align
 from lifting_recordings.bag_writer import START_TIME_NS, BagWriter, in_order
@@ -24,7 +25,7 @@ from lifting_recordings.c3d_files import read_c3d
 from lifting_recordings.exceptions import BagError, FileFormatError, SubjectFileError
 from lifting_recordings.messages import MarkerCalibration, subject_message, task_message
 from lifting_recordings.opensim_forces import read_trc_and_forces
-from lifting_recordings.recording import SIDES, Analog, Plate, RawRecording, Recording
+from lifting_recordings.recording import Analog, Plate, RawRecording, Recording
 from lifting_recordings.static_trial import calibrate_markers
 from lifting_recordings.subject_file import (
     QUIET_STANDING,

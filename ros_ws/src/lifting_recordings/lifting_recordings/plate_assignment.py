@@ -6,10 +6,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from human_model.constants import SIDES
 from human_model.typing import Array
 from lifting_recordings.exceptions import ConventionError
 from lifting_recordings.marker_roles import MarkerRoles
-from lifting_recordings.recording import SIDES, Plate, centre_of_pressure
+from lifting_recordings.recording import Plate, centre_of_pressure
 
 # Below this a plate is taken as unloaded [N]; the COP of a light load is dominated by noise.
 LOADED = 50.0

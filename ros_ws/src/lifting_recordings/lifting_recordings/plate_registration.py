@@ -20,13 +20,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from human_model.errors import HumanModelError
+from human_model.constants import SIDES
+from human_model.exceptions import HumanModelError
 from human_model.skeleton_3d import Skeleton3D
 from human_model.subject import Calibration, Subject
 from human_model.typing import Array
 from lifting_recordings.exceptions import ConventionError
 from lifting_recordings.messages import MarkerCalibration
-from lifting_recordings.recording import SIDES, Plate, Recording, centre_of_pressure
+from lifting_recordings.recording import Plate, Recording, centre_of_pressure
 from lifting_recordings.static_trial import person
 from lifting_recordings.subject_file import QUIET_STANDING, SubjectFile
 from motion_tracker.core.exceptions import MotionTrackerError

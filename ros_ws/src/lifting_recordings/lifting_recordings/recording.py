@@ -11,8 +11,6 @@ import numpy as np
 
 from human_model.typing import Array
 
-SIDES = ('right', 'left')
-
 
 @dataclass(frozen=True)
 class Plate:

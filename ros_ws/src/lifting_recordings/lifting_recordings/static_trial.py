@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from human_model.errors import HumanModelError
+from human_model.exceptions import HumanModelError
 from human_model.subject import Subject
 from lifting_recordings.exceptions import StaticTrialError, SubjectFileError
 from lifting_recordings.messages import MarkerCalibration

@@ -10,10 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from human_model.constants import SIDES
 from human_model.typing import Array
 from lifting_recordings.exceptions import UnreadableBagError
 from lifting_recordings.reader import BagLoss, BagReader
-from lifting_recordings.recording import SIDES, Plate
+from lifting_recordings.recording import Plate
 
 _LATCHED = ('subject', 'task')
 

@@ -4,8 +4,10 @@
 
 from __future__ import annotations
 
+from human_model.exceptions import LiftingError
 
-class ReportError(Exception):
+
+class ReportError(LiftingError):
     """The data given for the report do not fit together.
 
     Parameters

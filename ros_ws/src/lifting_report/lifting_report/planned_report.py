@@ -9,7 +9,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from human_model.errors import HumanModelError
+from human_model.exceptions import HumanModelError
 from lift_predictor import conversions as predictor_messages
 from lift_predictor.core.exceptions import LiftPredictorError
 from lift_predictor.core.planning.planned_lift import PlannedLift

@@ -12,7 +12,7 @@ from typing import Any
 
 from lifting_interfaces.msg import Subject
 
-from human_model.errors import HumanModelError
+from human_model.exceptions import HumanModelError
 from human_model.report import SolveStatus
 from injury_monitor.core.alarm import AlarmState
 from lift_predictor.core.exceptions import LiftPredictorError

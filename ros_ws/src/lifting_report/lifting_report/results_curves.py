@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from human_model.errors import HumanModelError
+from human_model.exceptions import HumanModelError
 from human_model.motion import BodyMotion
 from human_model.typing import Array
 from lift_predictor.core.exceptions import LiftPredictorError

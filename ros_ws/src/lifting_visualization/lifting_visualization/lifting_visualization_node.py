@@ -16,7 +16,7 @@ from std_msgs.msg import Header, String
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
 
-from human_model.errors import HumanModelError
+from human_model.exceptions import HumanModelError
 from lifting_node import qos
 from lifting_node.conversions import (
     LABORATORY,

@@ -27,7 +27,8 @@ from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 
-from human_model.errors import HumanModelError
+from human_model.constants import SIDES
+from human_model.exceptions import HumanModelError
 from human_model.subject import Subject
 from human_model.typing import Array
 from lifting_messages import LiftingMessagesError, decode
@@ -39,7 +40,6 @@ from lifting_node.run import run_node
 from motion_tracker import conversions, inputs
 from motion_tracker.core.configuration import tracker_from
 from motion_tracker.core.exceptions import MotionTrackerError
-from motion_tracker.core.force_plates import SIDES
 from motion_tracker.core.recording_segmenter import RecordingSegmenter
 from motion_tracker.core.tracked import DetectedEvent, Notice, Output, TrackedFrame
 from motion_tracker.core.tracked import MeasuredLift as TrackedLift

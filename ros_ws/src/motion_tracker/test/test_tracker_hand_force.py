@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from human_model.constants import GRAVITY as G
 from motion_tracker.core.exceptions import HandForceError
-from motion_tracker.core.force_plates import STANDARD_GRAVITY as G
 from motion_tracker.core.hand_force import HandForceEstimator, HandForceSettings
 from motion_tracker.core.hand_force_kernel import split
 

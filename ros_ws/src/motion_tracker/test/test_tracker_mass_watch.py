@@ -5,8 +5,8 @@
 import numpy as np
 import pytest
 
+from human_model.constants import GRAVITY
 from motion_tracker.core.exceptions import ForcePlateError
-from motion_tracker.core.force_plates import STANDARD_GRAVITY
 from motion_tracker.core.mass_watch import MassWatch
 
 RATE = 100.0
@@ -14,7 +14,7 @@ RATE = 100.0
 
 def watched(watch, vertical, need=None, box_mass=0.0):
     """Push samples; return what the watch said."""
-    weight = np.full(len(vertical), 70.0 * STANDARD_GRAVITY)
+    weight = np.full(len(vertical), 70.0 * GRAVITY)
     needs = weight if need is None else need
     said = [watch.push(f, n, box_mass, RATE) for f, n in zip(vertical, needs, strict=True)]
     return [check for check in said if check is not None]
@@ -26,7 +26,7 @@ def watched(watch, vertical, need=None, box_mass=0.0):
 def test_weight_off_by_more_than_five_percent_is_told(mass, ok):
     rng = np.random.default_rng(4)
     watch = MassWatch(70.0, 0.05)
-    quiet = mass * STANDARD_GRAVITY + rng.normal(0.0, 1.0, 100)
+    quiet = mass * GRAVITY + rng.normal(0.0, 1.0, 100)
     (check,) = watched(watch, quiet)
     assert check.plate_mass == pytest.approx(mass, abs=0.1)
     assert check.ok is ok is watch.agrees
@@ -53,7 +53,7 @@ def test_movement_is_no_weight():
 
 def test_box_in_the_hands_counts_and_an_unknown_one_does_not():
     watch = MassWatch(70.0, 0.05)
-    held = np.full(100, 82.0 * STANDARD_GRAVITY)
+    held = np.full(100, 82.0 * GRAVITY)
     assert not watched(watch, held, box_mass=None)
     (check,) = watched(watch, held, box_mass=12.0)
     assert check.ok
@@ -64,7 +64,7 @@ def test_box_in_the_hands_counts_and_an_unknown_one_does_not():
 
 def test_a_stretch_does_not_reach_over_a_change_of_the_load():
     watch = MassWatch(70.0, 0.05)
-    weight = np.full(40, 70.0 * STANDARD_GRAVITY)
+    weight = np.full(40, 70.0 * GRAVITY)
     assert not watched(watch, weight)
     assert not watched(watch, weight, box_mass=12.0)
     assert not watched(watch, weight)

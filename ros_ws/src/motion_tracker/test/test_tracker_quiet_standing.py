@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from human_model import compiled
+from human_model.constants import GRAVITY
 from motion_tracker.core.exceptions import TrackerError
 from motion_tracker.core.quiet_standing import coordinates_of, find_quiet_standing, missing_moment
 
@@ -36,9 +37,7 @@ def ground(skeleton, q):
     forces, moments = [], []
     nothing = np.zeros((len(skeleton.segments), 6))
     for row in zip(q, rate, acceleration, strict=True):
-        tau = compiled.newton_euler(
-            skeleton.tree, *(a.copy() for a in row), nothing, compiled.GRAVITY
-        )
+        tau = compiled.newton_euler(skeleton.tree, *(a.copy() for a in row), nothing, GRAVITY)
         _, origin, axis = compiled.body_frames(skeleton.tree, row[0].copy())
         force = np.array([tau[0], -tau[2], tau[1]])
         forces.append(force)
@@ -96,4 +95,4 @@ def test_real_squats_have_pauses(squats):
     missing = missing_moment(
         skeleton, standing, scale * force[standing.frames], scale * moment[standing.frames]
     )
-    assert (missing[:, :2] / (skeleton.total_mass * compiled.GRAVITY)).std(axis=0).max() < 4e-3
+    assert (missing[:, :2] / (skeleton.total_mass * GRAVITY)).std(axis=0).max() < 4e-3

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from human_model import compiled
+from human_model.constants import GRAVITY
 from human_model.skeleton_3d import Skeleton3D
 from motion_tracker.core.filters import derivatives, zero_phase
 from motion_tracker.core.inverse_kinematics import InverseKinematics
@@ -97,7 +98,7 @@ def test_moment_about_l5_s1_from_both_sides(squats, tracked):
         for side, (force, moment) in plates.items():
             wrench[skeleton.segments.index(f'foot_{side[0]}')] = [*force[i], *moment[i]]
         tau = compiled.newton_euler(
-            skeleton.tree, q[i].copy(), qd[i].copy(), qdd[i].copy(), wrench, compiled.GRAVITY
+            skeleton.tree, q[i].copy(), qd[i].copy(), qdd[i].copy(), wrench, GRAVITY
         )
         _, origin, axis = compiled.body_frames(skeleton.tree, q[i].copy())
         residual = np.array([tau[0], -tau[2], tau[1]])

@@ -26,7 +26,7 @@ from lifting_interfaces.msg import Subject as SubjectMsg
 from rclpy.clock import Clock, ClockType
 from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 
-from human_model.errors import HumanModelError
+from human_model.exceptions import HumanModelError
 from human_model.subject import Subject
 from lifting_node import qos
 from lifting_node.cdr import CdrError

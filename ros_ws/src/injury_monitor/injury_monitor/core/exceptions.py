@@ -4,8 +4,10 @@
 
 from __future__ import annotations
 
+from human_model.exceptions import LiftingError
 
-class InjuryMonitorError(Exception):
+
+class InjuryMonitorError(LiftingError):
     """Base of every exception of this package."""
 
 

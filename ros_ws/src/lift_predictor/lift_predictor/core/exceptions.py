@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Errors of the lift predictor."""
 
+from human_model.exceptions import LiftingError
 
-class LiftPredictorError(Exception):
+
+class LiftPredictorError(LiftingError):
     """Base of all errors that bad input to the predictor raises."""
 
 

@@ -17,7 +17,7 @@ from typing import Final
 
 import numpy as np
 
-from human_model.errors import HumanModelError
+from human_model.exceptions import HumanModelError
 from human_model.motion import Lift
 from human_model.report import SolveStatus
 from human_model.subject import RANGES

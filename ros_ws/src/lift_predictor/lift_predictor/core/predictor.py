@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from human_model.anthropometry import SegmentParameters
-from human_model.errors import HumanModelError
+from human_model.exceptions import HumanModelError
 from human_model.motion import Lift
 from human_model.report import SolveReport, SolveStatus
 from human_model.subject import Subject

@@ -4,8 +4,10 @@
 
 from __future__ import annotations
 
+from human_model.exceptions import LiftingError
 
-class LiftingVisualizationError(ValueError):
+
+class LiftingVisualizationError(LiftingError, ValueError):
     """Base of what can be wrong with the input of the package."""
 
 

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy.typing as npt
 
+from human_model.constants import SIDES
 from human_model.subject import Subject
-from motion_tracker.core.force_plates import SIDES, PlateGeometry
+from motion_tracker.core.force_plates import PlateGeometry
 from motion_tracker.core.lift_events import LiftEventSettings
 from motion_tracker.core.marker_set import load_marker_set
 from motion_tracker.core.tracked import TrackerSettings

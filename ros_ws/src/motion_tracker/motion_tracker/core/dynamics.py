@@ -4,8 +4,8 @@
 
 import numpy as np
 
-from human_model.compiled import GRAVITY
 from human_model.compiled_blocks import outer_force
+from human_model.constants import GRAVITY
 from human_model.skeleton import Skeleton
 from human_model.typing import Array
 

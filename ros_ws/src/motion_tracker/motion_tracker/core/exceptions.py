@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Exceptions of the motion tracker."""
 
+from human_model.exceptions import LiftingError
 
-class MotionTrackerError(ValueError):
+
+class MotionTrackerError(LiftingError, ValueError):
     """Base of every error this package raises on bad input."""
 
 

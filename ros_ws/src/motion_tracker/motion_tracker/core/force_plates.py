@@ -11,11 +11,6 @@ from human_model.typing import Array
 from motion_tracker.core import plate_kernel
 from motion_tracker.core.exceptions import ForcePlateError
 
-#: Standard gravity [m/s^2] (3rd CGPM 1901).
-STANDARD_GRAVITY = 9.80665
-
-SIDES = ('right', 'left')
-
 
 @dataclass(frozen=True, eq=False)
 class PlateGeometry:

@@ -5,8 +5,8 @@
 import numpy as np
 
 from human_model.compiled_cache import njit
+from human_model.constants import GRAVITY
 from human_model.typing import Array
-from motion_tracker.core.force_plates import STANDARD_GRAVITY
 
 #: Hands closer together than this share the box equally, squared [m^2].
 _NO_SPAN = 1e-4
@@ -83,7 +83,7 @@ def hand_forces(
     n = hands.shape[0]
     force = np.zeros((n, 2, 3))
     kept = 1.0 if np.isnan(since_end) else 1.0 - smooth_step(since_end / release_time)
-    most = largest_share * mass * STANDARD_GRAVITY
+    most = largest_share * mass * GRAVITY
     for k in range(n):
         if not np.all(np.isfinite(box[k])):
             continue
@@ -95,7 +95,7 @@ def hand_forces(
             taken = gate(hands[k], box[k], reach, fade) * min(max(missing[k], 0.0), most)
         right = split(hands[k], box[k])
         for r in range(3):
-            gravity = STANDARD_GRAVITY if r == 2 else 0.0
+            gravity = GRAVITY if r == 2 else 0.0
             total = carried * (-mass * (acceleration[k, r] + gravity))
             if r == 2:
                 total -= (1.0 - carried) * taken

@@ -11,12 +11,13 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from human_model.constants import SIDES
 from human_model.motion import POINTS
 from human_model.skeleton import Skeleton
 from human_model.typing import Array
 from motion_tracker.core.dynamics import needed_force
 from motion_tracker.core.filters import CausalFilter
-from motion_tracker.core.force_plates import SIDES, PlateGeometry
+from motion_tracker.core.force_plates import PlateGeometry
 from motion_tracker.core.hand_force import HandForceEstimator
 from motion_tracker.core.ik_types import IKSolution
 from motion_tracker.core.live_status import LiveStatus

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from human_model.compiled_cache import njit
+from human_model.constants import GRAVITY
 from human_model.typing import Array
 from motion_tracker.core.exceptions import ForcePlateError
-from motion_tracker.core.force_plates import STANDARD_GRAVITY
 
 
 @dataclass(frozen=True)
@@ -125,7 +125,7 @@ class MassWatch:
         if self._count < window:
             return None
         force, deviation, needed = _steadiness(self._recent)
-        weight = self._mass * STANDARD_GRAVITY
+        weight = self._mass * GRAVITY
         if (
             force <= 0
             or deviation > self.QUIET * force
@@ -135,7 +135,7 @@ class MassWatch:
         # The next stretch shares no sample with this one.
         self._count = 0
         before = self.check
-        self.check = MassCheck(force / STANDARD_GRAVITY, self._mass, box_mass, self._tolerance)
+        self.check = MassCheck(force / GRAVITY, self._mass, box_mass, self._tolerance)
         return self.check if before is None or before.ok is not self.check.ok else None
 
 

@@ -8,13 +8,14 @@ from copy import copy
 import numpy as np
 import numpy.typing as npt
 
+from human_model.constants import SIDES
 from human_model.motion import POINTS, Lift
 from human_model.report import SolveReport, SolveStatus
 from human_model.skeleton import Skeleton
 from human_model.typing import Array, IntArray
 from motion_tracker.core.dynamics import needed_force
 from motion_tracker.core.filters import derivatives, zero_phase
-from motion_tracker.core.force_plates import SIDES, GroundReaction, PlateGeometry, ground_reaction
+from motion_tracker.core.force_plates import GroundReaction, PlateGeometry, ground_reaction
 from motion_tracker.core.hand_force import HandForceEstimator
 from motion_tracker.core.streams import SampledStream, columns_at
 from motion_tracker.core.tracked import FrameRecord, MeasuredLift, TrackerSettings

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from human_model.compiled import GRAVITY, body_frames, newton_euler
+from human_model.compiled import body_frames, newton_euler
+from human_model.constants import GRAVITY
 from human_model.motion import POINTS
 from human_model.skeleton import Skeleton
 from human_model.skeleton_3d import Skeleton3D

@@ -14,13 +14,14 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 import numpy.typing as npt
 
+from human_model.constants import SIDES
 from human_model.motion import POINTS
 from human_model.skeleton_3d import Skeleton3D
 from human_model.subject import Subject
 from human_model.typing import Array
 from motion_tracker.core.exceptions import TrackerError
 from motion_tracker.core.filters import settling_time
-from motion_tracker.core.force_plates import SIDES, PlateGeometry
+from motion_tracker.core.force_plates import PlateGeometry
 from motion_tracker.core.hand_force import HandForceEstimator
 from motion_tracker.core.ik_types import IKSolution
 from motion_tracker.core.initial_rest import initial_speed

@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Errors of the muscle analyzer; every message names the file, element or field and the value."""
 
+from human_model.exceptions import LiftingError
 
-class MuscleAnalyzerError(Exception):
+
+class MuscleAnalyzerError(LiftingError):
     """Base of every error that this package raises on purpose."""
 
 

@@ -37,7 +37,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from human_model.errors import HumanModelError
+from human_model.exceptions import HumanModelError
 from human_model.subject import Subject
 from lift_predictor.core.exceptions import PlanError
 from lift_predictor.core.planning.fields import Fields, read_yaml

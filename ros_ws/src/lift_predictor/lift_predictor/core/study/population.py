@@ -11,7 +11,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from human_model.errors import HumanModelError
+from human_model.exceptions import HumanModelError
 from human_model.subject import Subject
 from lift_predictor.core.exceptions import PlanError
 from lift_predictor.core.planning.fields import Fields

@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from human_model.motion import SIDES, BodyMotion
+from human_model.constants import GRAVITY, SIDES
+from human_model.motion import BodyMotion
 from human_model.report import SolveReport, SolveStatus
 from human_model.typing import BoolArray, IntArray
 from muscle_analyzer.core.held import hold
@@ -37,8 +38,6 @@ HAND_POINTS = (('wrist_r', 'hand_r'), ('wrist_l', 'hand_l'))
 FOOT_POINTS = (('heel_r', 'mtp_r', 'toe_r'), ('heel_l', 'mtp_l', 'toe_l'))
 #: Share of the body weight above which the ground's force needs a centre of pressure.
 LOADED_SHARE = 0.05
-#: Standard acceleration of free fall [m/s^2] (CGPM 1901).
-GRAVITY = 9.80665
 #: What hangs on motion and forces, and what hangs on the optimisation as well.
 DYNAMICS = (
     'torque',

@@ -14,8 +14,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from human_model.constants import SIDES
 from human_model.frames import to_opensim
-from human_model.motion import SIDES, BodyMotion
+from human_model.motion import BodyMotion
 from human_model.typing import Array
 from muscle_analyzer.core.exceptions import InputArrayError, TransferError
 from muscle_analyzer.core.loads.block_solver import FEET, HANDS

@@ -24,7 +24,7 @@ from importlib.resources import files
 
 import numpy as np
 
-from human_model.errors import StrengthError
+from human_model.exceptions import StrengthError
 from human_model.strength import JointStrength, StrengthBound, surface
 from human_model.subject import Subject
 from human_model.typing import Array

@@ -7,7 +7,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Final
 
-from human_model.errors import HumanModelError
+from human_model.exceptions import HumanModelError
 from human_model.report import SolveReport, SolveStatus
 from human_model.subject import Subject
 from lift_predictor.core.exceptions import TaskError, UnreachableError

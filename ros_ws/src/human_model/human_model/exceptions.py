@@ -1,9 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Exceptions of the human model."""
+"""Exceptions of the human model, and the root of the exceptions of all packages."""
 
 
-class HumanModelError(ValueError):
+class LiftingError(Exception):
+    """Base of the exceptions of all packages of the project."""
+
+
+class HumanModelError(LiftingError, ValueError):
     """Base of every error this package raises on bad input."""
 
 
