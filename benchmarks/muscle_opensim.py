@@ -28,7 +28,7 @@ from muscle_analyzer.core.opensim_bridge.compare import Comparison, compare
 from muscle_analyzer.core.opensim_bridge.export import ExportOptions, export_motion
 from muscle_analyzer.core.opensim_bridge.motion_on_model import MotionOnModel
 from muscle_analyzer.core.opensim_bridge.own_results import OwnSide
-from muscle_analyzer.core.opensim_bridge.process import OpenSimPython, run_referee
+from muscle_analyzer.core.opensim_bridge.process import OpenSimPython, run_opensim
 from muscle_analyzer.core.opensim_bridge.results import OpenSimRun, read_opensim
 
 OPTIONS: Final = MuscleAnalyzerOptions(force_length_velocity=True)
@@ -80,7 +80,7 @@ def referee(python: OpenSimPython, given: BenchMotion) -> Referee:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         _export(folder, given, motion, replace(SETTINGS, samples_per_solution=int(rows[0])))
-        run_referee(python, folder, motion.time[rows], print, together=True)
+        run_opensim(python, folder, motion.time[rows], print, together=True)
         own = OwnSide(motion, OPTIONS)
         run = read_opensim(folder, motion, own.muscle_names, own.coordinate_names, rows)
     result = compare(motion, motion, rows, run, OPTIONS)

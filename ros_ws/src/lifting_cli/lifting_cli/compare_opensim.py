@@ -22,7 +22,7 @@ from muscle_analyzer.core.opensim_bridge.compare import DIFFERENT_PROBLEM, Compa
 from muscle_analyzer.core.opensim_bridge.export import ExportOptions, export_motion
 from muscle_analyzer.core.opensim_bridge.motion_on_model import motion_on_model
 from muscle_analyzer.core.opensim_bridge.own_results import OwnSide
-from muscle_analyzer.core.opensim_bridge.process import find_opensim, run_referee
+from muscle_analyzer.core.opensim_bridge.process import find_opensim, run_opensim
 from muscle_analyzer.core.opensim_bridge.results import read_opensim
 from muscle_analyzer.core.opensim_bridge.setup_files import RESULTS
 from muscle_analyzer.core.recruitment.static_optimization import (
@@ -111,7 +111,7 @@ def compare_opensim(options: CompareOptions, say: Callable[[str], None]) -> Comp
         if python is None:
             return None
         say(f'OpenSim {python.version} solves {rows.size} instants, some seconds each')
-        run_referee(python, options.output, splined.time[rows], say)
+        run_opensim(python, options.output, splined.time[rows], say)
         own = OwnSide(splined, settings)
         run = read_opensim(options.output, splined, own.muscle_names, own.coordinate_names, rows)
         result = compare(motion, splined, rows, run, settings)

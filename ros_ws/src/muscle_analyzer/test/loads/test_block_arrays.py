@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from human_model.frames import from_opensim, to_opensim
-from muscle_analyzer.core.held import hold
+from muscle_analyzer.core.boxed_tuple import boxed
 from muscle_analyzer.core.loads.block_arrays import (
     ANGLE_GOAL,
     DISTANCE_GOAL,
@@ -33,7 +33,7 @@ PLACES = Places(
 
 @pytest.fixture(scope='module')
 def held():
-    return hold(PLACES)
+    return boxed(PLACES)
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ import pytest
 from human_model.frames import matrix_from_quaternion
 from human_model.strength import JointStrength
 from human_model.subject import Subject
-from muscle_analyzer.core.held import hold
+from muscle_analyzer.core.boxed_tuple import boxed
 from muscle_analyzer.core.loads.torque_arrays import TorqueTable, torques_and_limits
 
 N = 5
@@ -42,7 +42,9 @@ def test_block_of_torques_and_limits(table, bounds):
     frames = RNG.normal(size=(N, 3, 4))
     frames /= np.linalg.norm(frames, axis=2, keepdims=True)
     net, torque = RNG.normal(size=(N, 3)), RNG.normal(size=(N, 3))
-    got, lower, upper = torques_and_limits(hold(table), position, velocity, frames, 2, net, torque)
+    got, lower, upper = torques_and_limits(
+        boxed(table), position, velocity, frames, 2, net, torque
+    )
     left = matrix_from_quaternion(frames[:, 2])[:, :, 1]
     np.testing.assert_allclose(got[:, 0], -(left * net).sum(axis=1))
     np.testing.assert_array_equal(got[:, 1:], torque[:, [2, 0, 1]] * [1.0, 1.0, -1.0])
@@ -61,7 +63,7 @@ def test_axes_of_the_pelvis(table, axis):
     matrix = matrix_from_quaternion(quaternion)[0, 0]
     for world in range(3):
         net = np.eye(3)[world : world + 1]
-        got = torques_and_limits(hold(one), zero, zero, quaternion, 0, net, np.zeros((1, 3)))[0]
+        got = torques_and_limits(boxed(one), zero, zero, quaternion, 0, net, np.zeros((1, 3)))[0]
         assert got[0, 0] == pytest.approx(matrix[world, axis], abs=1e-14)
 
 
@@ -70,5 +72,5 @@ def test_strength_does_not_change_its_direction(table):
     negative = table._replace(coefficients=-np.abs(table.coefficients))
     zero = np.zeros((1, 4))
     args = np.array([[[0.0, 0.0, 0.0, 1.0]]]), 0, np.zeros((1, 3)), np.zeros((1, 3))
-    _, lower, upper = torques_and_limits(hold(negative), zero, zero, *args)
+    _, lower, upper = torques_and_limits(boxed(negative), zero, zero, *args)
     assert not lower.any() and not upper.any()

@@ -37,7 +37,7 @@ def own(box_lift):
 
 
 def write_results(folder, own, **changes):
-    """Write what OpenSim's tools and the referee would, in another order of columns."""
+    """Write what OpenSim's tools and the script would, in another order of columns."""
     results = folder / files.RESULTS
     results.mkdir()
     motion, side = own.motion, own.side
@@ -62,7 +62,7 @@ def write_results(folder, own, **changes):
         for joint, body in joints for kind in 'mf' for axis in 'xyz'
     ]  # fmt: skip
     write(files.REACTIONS_RESULT, columns, time, parts['reaction'][:, 1:].reshape(2, -1))
-    referee = {
+    stored = {
         'opensim': '4.6-test',
         'times': parts.get('times', time.tolist()),
         'seconds': {'static_optimization': [3.0, 3.5]},
@@ -71,7 +71,7 @@ def write_results(folder, own, **changes):
         'length': parts['length'][:, ::-1].tolist(),
         'moment_arm': parts['moment_arm'][:, ::-1, ::-1].tolist(),
     }
-    (results / files.REFEREE_RESULT).write_text(json.dumps(referee), encoding='utf-8')
+    (results / files.SCRIPT_RESULT).write_text(json.dumps(stored), encoding='utf-8')
     return folder
 
 
@@ -212,12 +212,12 @@ def test_optimum_balances_the_torques_of_the_forces_that_it_is_given(own):
 
 def test_results_of_other_instants_are_refused(own, tmp_path):
     write_results(tmp_path, own, times=[0.1, 0.2])
-    with pytest.raises(OpenSimError, match=r'referee\.json: at \[0\.1 0\.2\] s, not at'):
+    with pytest.raises(OpenSimError, match=r'opensim\.json: at \[0\.1 0\.2\] s, not at'):
         read(tmp_path, own)
 
 
 def test_results_that_are_missing_are_named(own, tmp_path):
-    with pytest.raises(OpenSimError, match=r'referee\.json: cannot be read'):
+    with pytest.raises(OpenSimError, match=r'opensim\.json: cannot be read'):
         read(tmp_path, own)
     write_results(tmp_path, own)
     (tmp_path / files.RESULTS / files.REACTIONS_RESULT).unlink()

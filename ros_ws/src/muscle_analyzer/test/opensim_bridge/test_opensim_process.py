@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Finding a Python with OpenSim and running the referee: what is said when either fails."""
+"""Finding a Python with OpenSim and running the script, and the errors of both."""
 
 import sys
 from pathlib import Path
@@ -9,13 +9,12 @@ import numpy as np
 import pytest
 
 from muscle_analyzer.core.exceptions import OpenSimError
-from muscle_analyzer.core.opensim_bridge import process, setup_files
-from muscle_analyzer.core.opensim_bridge import script as referee
+from muscle_analyzer.core.opensim_bridge import process, script, setup_files
 from muscle_analyzer.core.opensim_bridge.process import (
     VARIABLE,
     OpenSimPython,
     find_opensim,
-    run_referee,
+    run_opensim,
 )
 from muscle_analyzer.core.opensim_bridge.storage import Storage, read_storage, write_storage
 
@@ -78,25 +77,25 @@ def test_libraries_of_this_process_do_not_reach_opensim(monkeypatch, program):
 def test_instants_are_told_and_everything_is_logged(tmp_path, program):
     python = program('echo "arguments $*"', 'echo "0.100 s solved"', 'echo a warning >&2')
     told = []
-    run_referee(OpenSimPython(python, '4.6'), tmp_path, np.array([0.1]), told.append)
+    run_opensim(OpenSimPython(python, '4.6'), tmp_path, np.array([0.1]), told.append)
     assert told == ['0.100 s solved']
-    log = (tmp_path / 'referee.log').read_text(encoding='utf-8')
+    log = (tmp_path / 'opensim.log').read_text(encoding='utf-8')
     assert 'a warning' in log
     assert log.splitlines()[0].endswith(f'script.py {tmp_path} --at 0.10000000000000001')
 
 
 def test_a_failure_carries_the_end_of_the_log(tmp_path, program):
     python = program('echo the model has no such body', 'exit 3')
-    with pytest.raises(OpenSimError, match=r'exit code 3; .*referee\.log ends with\nthe model'):
-        run_referee(OpenSimPython(python, '4.6'), tmp_path, np.array([0.1]), print)
+    with pytest.raises(OpenSimError, match=r'exit code 3; .*opensim\.log ends with\nthe model'):
+        run_opensim(OpenSimPython(python, '4.6'), tmp_path, np.array([0.1]), print)
 
 
 def test_a_run_that_hangs_is_ended(tmp_path, program, monkeypatch):
     monkeypatch.setattr(process, '_START_TIME', 0.2)
     monkeypatch.setattr(process, '_INSTANT_TIME', 0.0)
     python = program('exec sleep 60')
-    with pytest.raises(OpenSimError, match=r'took more than 0 s; see .*referee\.log'):
-        run_referee(OpenSimPython(python, '4.6'), tmp_path, np.array([0.1]), print)
+    with pytest.raises(OpenSimError, match=r'took more than 0 s; see .*opensim\.log'):
+        run_opensim(OpenSimPython(python, '4.6'), tmp_path, np.array([0.1]), print)
 
 
 def test_the_script_knows_the_files_by_the_names_that_the_exporter_gives():
@@ -108,12 +107,12 @@ def test_the_script_knows_the_files_by_the_names_that_the_exporter_gives():
         ('MODEL', 'MODEL'),
         ('COORDINATES', 'COORDINATES'),
         ('RESULTS', 'RESULTS'),
-        ('ANSWER', 'REFEREE_RESULT'),
+        ('ANSWER', 'SCRIPT_RESULT'),
         ('FORCES', 'FORCES_RESULT'),
         ('ACTIVATIONS', 'ACTIVATIONS_RESULT'),
         ('REACTIONS', 'REACTIONS_RESULT'),
     ):
-        assert getattr(referee, name) == getattr(setup_files, other)
+        assert getattr(script, name) == getattr(setup_files, other)
 
 
 def test_rows_of_instants_become_one_table(tmp_path):
@@ -125,11 +124,11 @@ def test_rows_of_instants_become_one_table(tmp_path):
         write_storage(path, table)
         parts.append(path)
     whole = tmp_path / 'whole.sto'
-    referee.joined(parts, whole)
+    script.joined(parts, whole)
     found = read_storage(whole)
     np.testing.assert_array_equal(found.values, [[1.0, 2.0], [2.0, 2.0]])
     np.testing.assert_allclose(found.time, [0.0, 0.1])
-    referee.joined(parts[1:], whole)
+    script.joined(parts[1:], whole)
     found = read_storage(whole)
     np.testing.assert_array_equal(found.values, [[2.0, 2.0], [2.0, 2.0]])
     assert found.time[1] - found.time[0] == pytest.approx(1e-6, rel=1e-3)

@@ -23,7 +23,7 @@ from muscle_analyzer.core.opensim_bridge.compare import compare
 from muscle_analyzer.core.opensim_bridge.export import ExportOptions, export_motion
 from muscle_analyzer.core.opensim_bridge.motion_on_model import MotionOnModel
 from muscle_analyzer.core.opensim_bridge.own_results import OwnSide
-from muscle_analyzer.core.opensim_bridge.process import find_opensim, run_referee
+from muscle_analyzer.core.opensim_bridge.process import find_opensim, run_opensim
 from muscle_analyzer.core.opensim_bridge.results import read_opensim
 from muscle_analyzer.core.osim.reader import read_osim
 from muscle_analyzer.core.recruitment.reserves import Reserve
@@ -54,7 +54,7 @@ def swing(write_model, tmp_path, opensim, monkeypatch):
     folder = tmp_path / 'swing'
     export_motion(folder, motion)
     rows = motion.rows(np.array([0.11, 0.2, 0.3]))
-    run_referee(opensim, folder, motion.time[rows], print)
+    run_opensim(opensim, folder, motion.time[rows], print)
     run = read_opensim(folder, motion, ('flexor',), model.coordinate_names, rows)
     return SimpleNamespace(motion=motion, rows=rows, run=run, folder=folder)
 
@@ -99,7 +99,7 @@ def test_all_instants_in_one_run_of_each_tool_as_well(swing, opensim, tmp_path):
     for together in (False, True):
         folder = tmp_path / f'together_{together}'
         export_motion(folder, motion, ExportOptions(samples_per_solution=10))
-        run_referee(opensim, folder, motion.time[rows], print, together)
+        run_opensim(opensim, folder, motion.time[rows], print, together)
         answers.append(read_opensim(folder, motion, names, coordinates, rows).answer)
     for field in ('force', 'reserve', 'reaction', 'moment_arm'):
         apart, one = (getattr(answer, field) for answer in answers)
@@ -109,7 +109,7 @@ def test_all_instants_in_one_run_of_each_tool_as_well(swing, opensim, tmp_path):
 def test_a_folder_without_its_model_fails_with_opensims_words(swing, opensim):
     (swing.folder / files.MODEL).unlink()
     with pytest.raises(OpenSimError, match=r'exit code 1(?s:.*)model\.osim'):
-        run_referee(opensim, swing.folder, swing.motion.time[swing.rows[:1]], print)
+        run_opensim(opensim, swing.folder, swing.motion.time[swing.rows[:1]], print)
 
 
 @pytest.mark.long
@@ -119,7 +119,7 @@ def test_a_lift_with_the_full_body_model(box_lift, opensim, tmp_path):
     motion = box_lift.motion.with_splined_rates()
     rows = motion.rows(np.array([0.15]))
     export_motion(tmp_path, box_lift.motion)
-    run_referee(opensim, tmp_path, motion.time[rows], print)
+    run_opensim(opensim, tmp_path, motion.time[rows], print)
     own = OwnSide(motion, options)
     run = read_opensim(tmp_path, motion, own.muscle_names, own.coordinate_names, rows)
     result = compare(box_lift.motion, motion, rows, run, options)

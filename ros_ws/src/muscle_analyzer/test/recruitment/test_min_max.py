@@ -6,12 +6,15 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numba import njit
 from scipy.optimize import linprog
 
 from human_model.report import SolveStatus
 from muscle_analyzer.core.loads.load_solver import LoadSolver
 from muscle_analyzer.core.loads.options import MuscleAnalyzerOptions
-from muscle_analyzer.core.recruitment.min_max import SQUARES_SHARE, WARM_STEPS
+from muscle_analyzer.core.loads.sample import compute_joint_torques
+from muscle_analyzer.core.loads.sample_data import allocate_workspace
+from muscle_analyzer.core.recruitment.min_max import SQUARES_WEIGHT, WARM_STEPS
 from muscle_analyzer.core.recruitment.reserves import Reserve
 from muscle_analyzer.core.recruitment.static_optimization import (
     StaticOptimization,
@@ -42,7 +45,7 @@ def test_passive_torque_moves_the_activation_along_its_bounds(stretched):
     b + e b^2 + (T - 100 b)^2 is smallest at b = (200 T - 1) / (20000 + 2 e), between the bounds.
     """
     torque = 40.0 + stretched
-    expected = np.clip((200.0 * torque - 1.0) / (20000.0 + 2.0 * SQUARES_SHARE), 0.01, 1.0)
+    expected = np.clip((200.0 * torque - 1.0) / (20000.0 + 2.0 * SQUARES_WEIGHT), 0.01, 1.0)
     result = solver(1, 1).solve(np.array([[100.0]]), np.array([torque]))
     assert result.activation[0] == pytest.approx(expected, rel=1e-12)
     assert result.reserve[0] == pytest.approx(torque - 100.0 * expected, rel=1e-9, abs=1e-9)
@@ -59,7 +62,7 @@ def test_a_joint_that_passive_forces_overpower_leaves_the_other_one_solved(passi
     """
     matrix = np.array([[50.0, 30.0, 0.0], [0.0, 40.0, -60.0]])
     result = solver(2, 3).solve(matrix, np.array([passive, 0.0]))
-    third = 2400.0 / (3600.0 + SQUARES_SHARE)
+    third = 2400.0 / (3600.0 + SQUARES_WEIGHT)
     assert result.activation == pytest.approx([1.0, 1.0, third], rel=1e-9)
     assert result.reserve == pytest.approx([passive - 80.0, 60.0 * third - 40.0], rel=1e-9)
     assert result.report.status is SolveStatus.MUSCLE_TOO_WEAK
@@ -78,7 +81,7 @@ def test_ties_at_the_largest_activation(torque, copies):
     matrix = np.concatenate([np.full(copies, 400.0 / copies), np.zeros(5), [-50.0]])[None]
     weight = np.linspace(0.5, 2.0, matrix.size)
     result = solver(1, matrix.size, weight).solve(matrix, np.array([torque]))
-    total = SQUARES_SHARE * weight[:copies].sum()
+    total = SQUARES_WEIGHT * weight[:copies].sum()
     b = min((800.0 * (torque + 0.5) - 1.0) / (2.0 * 400.0**2 + 2.0 * total), 1.0)
     assert result.activation[:copies] == pytest.approx(np.full(copies, b), rel=1e-9)
     assert np.all(result.activation[copies:] == 0.01)
@@ -93,7 +96,7 @@ def gap(optimizer, matrix, torque, result):
     bound: then the least is taken there.
     """
     a = optimizer.actuators
-    share = SQUARES_SHARE * a.weight
+    share = SQUARES_WEIGHT * a.weight
     control = (torque - matrix @ result.activation) / a.unit
     b = result.activation.max()
     cost = b + share @ result.activation**2 + control @ control
@@ -168,26 +171,42 @@ def bending(lifting_multibody):
             static_optimization=StaticOptimizationOptions(criterion='min_max'),
         )
         loads = LoadSolver(lifting_multibody, options)
-        asked = []
-        share = loads.optimization.share
-        loads.optimization.share = lambda matrix, torque: (
-            asked.append((matrix.copy(), torque.copy())) or share(matrix, torque)
-        )
         names = lifting_multibody.coordinate_names
         q = np.array(amount)[:, None] * np.array([BEND.get(name, 0.0) for name in names])
         still = np.zeros_like(q)
         external = np.zeros((len(amount), len(lifting_multibody.body_names), 6))
         found = loads.solve_block(q, still, still, external)
         solutions = [loads.solution(found, k, 0.0) for k in range(len(amount))]
-        return loads, asked, solutions
+        given = [
+            _torque_problem(loads.sample_model, q[k], still[k], external[k])
+            for k in range(len(amount))
+        ]
+        return loads, given, solutions
 
     return problems
 
 
+def _torque_problem(model, q, still, external):
+    """Return torque of each muscle at full activation (n_c, n_m) and torque to balance (n_c,)."""
+    workspace = allocate_workspace(model)
+    _compute(model, workspace, q, still, external)
+    start, row, value = workspace.columns
+    matrix = np.zeros((workspace.to_balance.size, start.size - 1))
+    for m in range(start.size - 1):
+        entries = slice(start[m], start[m + 1])
+        matrix[row[entries], m] = value[entries]
+    return matrix, workspace.to_balance
+
+
+@njit
+def _compute(model, workspace, q, still, external):
+    compute_joint_torques(model, workspace, q, still, still, external)
+
+
 def test_passive_forces_of_the_generic_model_are_too_strong_and_it_says_so(bending):
     """Bent far, its stretched fibres ask for 1e7 N m at L5-S1, and all muscles have 5000."""
-    loads, asked, solutions = bending(np.linspace(0.8, 1.0, 5), True)
-    for (matrix, torque), solution in zip(asked, solutions, strict=True):
+    loads, given, solutions = bending(np.linspace(0.8, 1.0, 5), True)
+    for (matrix, torque), solution in zip(given, solutions, strict=True):
         assert np.abs(torque).max() > 1e3 * np.abs(matrix).sum(axis=1).max()
         report = solution.balance.report
         assert report.status is SolveStatus.MUSCLE_TOO_WEAK
@@ -200,7 +219,7 @@ def test_passive_forces_of_the_generic_model_are_too_strong_and_it_says_so(bendi
 
 @pytest.mark.parametrize(('amount', 'stretched'), [(0.1, False), (0.3, False), (0.02, True)])
 def test_no_smaller_largest_activation_balances_a_real_frame(bending, amount, stretched):
-    """Referee: the linear programme min t, |a| <= t, with the same reserves (HiGHS)."""
+    """Reference: the linear programme min t, |a| <= t, with the same reserves (HiGHS)."""
     loads, ((matrix, torque),), (solution,) = bending([amount], stretched)
     balance, low = solution.balance, loads.optimization.actuators.lower
     assert balance.converged
@@ -214,6 +233,6 @@ def test_no_smaller_largest_activation_balances_a_real_frame(bending, amount, st
     assert best.status == 0
     largest = balance.activation.max()
     more = best.x[:-1] @ best.x[:-1] - balance.activation @ balance.activation
-    assert best.fun - 1e-6 <= largest <= best.fun + SQUARES_SHARE * max(more, 0.0) + 1e-6
+    assert best.fun - 1e-6 <= largest <= best.fun + SQUARES_WEIGHT * max(more, 0.0) + 1e-6
     beyond, cost = gap(loads.optimization, matrix, torque, balance)
     assert abs(beyond) < 1e-12 * max(1.0, cost)

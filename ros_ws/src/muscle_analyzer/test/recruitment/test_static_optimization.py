@@ -169,7 +169,7 @@ def test_start_goes_on_as_the_two_frames_before():
     steps = []
     for k in range(8):
         # The other solver is told that nothing changed between the frames before.
-        last.past[1] = last.past[0]
+        last.warm_start[1] = last.warm_start[0]
         torques = (1.0 + 0.01 * k) * torque
         steps.append([s.solve(matrix, torques).report.iterations for s in (onward, last)])
     assert steps[:2] == [steps[0], [steps[1][0]] * 2]  # one frame before: no change known
@@ -179,6 +179,6 @@ def test_start_goes_on_as_the_two_frames_before():
 def test_failed_frame_leaves_no_start():
     matrix, torque = random_problem(3)
     optimizer = solver(*matrix.shape, max_iterations=1)
-    optimizer.past[:] = 1.0
+    optimizer.warm_start[:] = 1.0
     assert not optimizer.solve(matrix, torque).converged
-    assert not optimizer.past.any()
+    assert not optimizer.warm_start.any()

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from human_model.report import SolveReport, SolveStatus
 from human_model.typing import Array
 from muscle_analyzer.core.exceptions import InputArrayError
-from muscle_analyzer.core.loads.sample_status import worst
+from muscle_analyzer.core.loads.sample_status import worst_report
 
 
 class Origin(NamedTuple):
@@ -159,7 +159,7 @@ class MuscleAnalysis:
     @cached_property
     def report(self) -> SolveReport:
         """Report of the worst sample: highest status, then largest residual."""
-        return worst(self.reports, self.time.tolist())
+        return worst_report(self.reports, self.time.tolist())
 
     @cached_property
     def spine_status(self) -> NDArray[np.int64]:
@@ -169,7 +169,7 @@ class MuscleAnalysis:
     @cached_property
     def spine_report(self) -> SolveReport:
         """Report of the worst L5-S1 load."""
-        return worst(self.spine_reports, self.time.tolist())
+        return worst_report(self.spine_reports, self.time.tolist())
 
     @property
     def good_spine_samples(self) -> int:

@@ -15,13 +15,13 @@ import numpy as np
 
 from human_model.compiled_cache import njit
 from human_model.typing import Array, BoolArray, IntArray
-from muscle_analyzer.core.held import Held
+from muscle_analyzer.core.boxed_tuple import Boxed
 from muscle_analyzer.core.loads.disc_frame import DEGREE
 from muscle_analyzer.core.loads.disc_pose import world_poses
 from muscle_analyzer.core.multibody.inverse_dynamics import add_force
 
 #: Distance [m] and angle [rad] that hands, feet and trunk should keep in the transfer (the
-#: project's goals); what is above them is told in the report's message.
+#: project's goals); larger ones are in the report's message.
 DISTANCE_GOAL, ANGLE_GOAL = 0.005, math.radians(1.0)
 
 
@@ -36,7 +36,7 @@ class Places(NamedTuple):
     lumbosacral : int
         Of the joints with loads.
     hand_points, foot_points : (2, n) int
-        Points that tell where hands and feet are.
+        Points of hands and feet.
     thorax : int
         Frame.
     hand_frames, foot_frames : (2,) int
@@ -117,6 +117,24 @@ class SolvedArrays(NamedTuple):
     foot_angle: Array
     missed: BoolArray
 
+    def discard_dynamics(self, samples: list[int]) -> None:
+        """Set to NaN the results that depend on motion and external forces alone."""
+        if samples:
+            for array in (
+                self.disc_position, self.disc_orientation, self.net_moment_top_down,
+                self.net_moment_bottom_up, self.pelvis_residual,
+            ):  # fmt: skip
+                array[samples] = np.nan
+
+    def discard_muscles(self, samples: list[int]) -> None:
+        """Set to NaN the results that depend on the muscle forces."""
+        if samples:
+            for array in (
+                self.l5_s1_force, self.l5_s1_moment, self.compression_per_degree,
+                self.anterior_shear_per_degree,
+            ):  # fmt: skip
+                array[samples] = np.nan
+
 
 @njit
 def _to_opensim(vector: Array, out: Array) -> None:
@@ -129,18 +147,18 @@ def _from_opensim(vector: Array, out: Array) -> None:
 
 
 @njit
-def outside_wrenches(held: Held[Places], forces: OutsideForces) -> Loaded:
-    """Give the wrenches of ground and box on the bodies.
+def outside_wrenches(boxed: Boxed[Places], forces: OutsideForces) -> Loaded:
+    """Return the wrenches of ground and box on the bodies.
 
-    A foot without centre of pressure is not pushed.
+    A foot without centre of pressure has none.
 
     Parameters
     ----------
-    held : Held of Places
+    boxed : Boxed of Places
     forces
         Of the block.
     """
-    places = held.content
+    places = boxed.content
     n = forces.centre_of_pressure.shape[0]
     out = Loaded(
         np.zeros((n, places.n_bodies, 6)), np.empty((n, 2), np.bool_), np.empty(n, np.bool_)
@@ -166,7 +184,7 @@ def outside_wrenches(held: Held[Places], forces: OutsideForces) -> Loaded:
 
 @njit
 def _largest(values: Array, index: IntArray) -> float:
-    """Give the largest of some values; NaN if one is."""
+    """Return the largest of some values; NaN if one is."""
     out = float(values[index[0]])
     for i in range(1, index.size):
         value = values[index[i]]
@@ -177,7 +195,7 @@ def _largest(values: Array, index: IntArray) -> float:
 
 @njit
 def _empty_arrays(n: int, position: Array, orientation: Array) -> SolvedArrays:
-    """Give room for n frames, the poses of the disc being known."""
+    """Return arrays for n samples, with the poses of the disc."""
     return SolvedArrays(
         position,
         orientation,
@@ -199,7 +217,7 @@ def _empty_arrays(n: int, position: Array, orientation: Array) -> SolvedArrays:
 
 @njit
 def solved_arrays(
-    held: Held[Places],
+    boxed: Boxed[Places],
     disc_pose: Array,
     joint_force: Array,
     joint_moment: Array,
@@ -208,17 +226,17 @@ def solved_arrays(
     point_distance: Array,
     frame_angle: Array,
 ) -> SolvedArrays:
-    """Put solutions into REP-103 axes and beside them the quality of the transfer.
+    """Return solutions in REP-103 axes, with the quality of the transfer.
 
     Parameters
     ----------
-    held : Held of Places
+    boxed : Boxed of Places
     disc_pose, joint_force, joint_moment, net_moment, pelvis_residual
-        Of `sample_data.FrameLoads`.
+        Of `sample_data.SampleLoads`.
     point_distance, frame_angle
         Of `motion_transfer.TransferredMotion`.
     """
-    places = held.content
+    places = boxed.content
     n, l5_s1 = disc_pose.shape[0], places.lumbosacral
     position, orientation = world_poses(disc_pose)
     out = _empty_arrays(n, position, orientation)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""The muscle analysis of a block: loads from outside, solution, transfer quality, verdicts."""
+"""The muscle analysis of a block: external loads, solution, quality of the transfer, reports."""
 
 from __future__ import annotations
 
@@ -13,8 +13,7 @@ from human_model.constants import GRAVITY, SIDES
 from human_model.motion import BodyMotion
 from human_model.report import SolveReport, SolveStatus
 from human_model.typing import BoolArray, IntArray
-from muscle_analyzer.core.held import hold
-from muscle_analyzer.core.loads import sample_status as verdict
+from muscle_analyzer.core.boxed_tuple import boxed
 from muscle_analyzer.core.loads.analysis import MuscleAnalysis, Origin
 from muscle_analyzer.core.loads.block_arrays import (
     ANGLE_GOAL,
@@ -28,36 +27,23 @@ from muscle_analyzer.core.loads.block_arrays import (
 )
 from muscle_analyzer.core.loads.load_solver import LoadSolver
 from muscle_analyzer.core.loads.options import MuscleAnalyzerOptions
+from muscle_analyzer.core.loads.sample_status import (
+    NO_ISSUE,
+    Issue,
+    overall_report,
+    spine_report,
+    torque_status,
+    tracker_issue,
+)
 from muscle_analyzer.core.subject.model import SubjectModel
 from muscle_analyzer.core.transfer.motion_transfer import TransferredMotion
 
-#: Bodies that the ground and the box push, and points that tell where hands and feet are; always
-#: [right, left].
+#: Bodies on which ground and box act, and points of hands and feet; always [right, left].
 FEET, HANDS = ('calcn_r', 'calcn_l'), ('hand_r', 'hand_l')
 HAND_POINTS = (('wrist_r', 'hand_r'), ('wrist_l', 'hand_l'))
 FOOT_POINTS = (('heel_r', 'mtp_r', 'toe_r'), ('heel_l', 'mtp_l', 'toe_l'))
-#: Share of the body weight above which the ground's force needs a centre of pressure.
-LOADED_SHARE = 0.05
-#: What hangs on motion and forces, and what hangs on the optimisation as well.
-DYNAMICS = (
-    'torque',
-    'disc_position',
-    'disc_orientation',
-    'net_moment_top_down',
-    'net_moment_bottom_up',
-    'pelvis_residual',
-)
-MUSCLES = (
-    'activation',
-    'force',
-    'reserve',
-    'l5_s1_force',
-    'joint_force',
-    'joint_moment',
-    'l5_s1_moment',
-    'compression_per_degree',
-    'anterior_shear_per_degree',
-)
+#: Fraction of the body weight above which the ground's force needs a centre of pressure.
+LOADED_FRACTION = 0.05
 
 
 class BlockSolver:
@@ -77,7 +63,7 @@ class BlockSolver:
         self._disc_frame = str(self._loads.disc)
         self._weight = GRAVITY * model.source.mass
         points, frames = subject.points.names, subject.points.frame_names
-        self._places = hold(
+        self._places = boxed(
             Places(
                 n_bodies=len(model.body_names),
                 feet=_numbers(FEET, model.body_names),
@@ -94,7 +80,7 @@ class BlockSolver:
         self._hands = np.zeros(2, np.int64)
 
     def reset(self) -> None:
-        """Forget the sample before."""
+        """Clear the warm start."""
         self._loads.reset()
 
     def solve(
@@ -127,7 +113,7 @@ class BlockSolver:
             If a torque or moment arm is not finite.
         """
         began = time.perf_counter()
-        given = self._outside(motion)
+        given = self._external(motion)
         loads = self._loads.solve_block(poses.q, poses.qd, poses.qdd, given.external)
         arrays = solved_arrays(
             self._places,
@@ -144,23 +130,22 @@ class BlockSolver:
         status = tracker_status.tolist()
         reports, spine_reports = [], []
         for k in range(n):
-            problems = (
-                verdict.tracker_problem(status[k]),
-                _fit_problem(poses, k),
-                self._ground_problem(given, motion, k),
+            issues = (
+                tracker_issue(status[k]),
+                _transfer_issue(poses, k),
+                self._ground_issue(given, motion, k),
             )
             own = self._loads.report(loads, k, *times)
-            report = verdict.overall(own, problems, _transfer_notes(poses, arrays, k))
+            report = overall_report(own, issues, _transfer_notes(poses, arrays, k))
             reports.append(report)
             spine_reports.append(self._spine_report(report, loads.weak[k]))
-        torque_status = [verdict.torques(report) for report in reports]
-        unusable = [k for k in range(n) if torque_status[k] is not SolveStatus.OK]
+        statuses = [torque_status(report) for report in reports]
+        unusable = [k for k in range(n) if statuses[k] is not SolveStatus.OK]
         unsolved = np.flatnonzero(~loads.converged).tolist()
-        for empty, names in ((unusable, DYNAMICS), (unusable + unsolved, MUSCLES)):
-            if empty:
-                for name in names:
-                    source = arrays if name in SolvedArrays._fields else loads
-                    getattr(source, name)[empty] = np.nan
+        arrays.discard_dynamics(unusable)
+        loads.discard_dynamics(unusable)
+        arrays.discard_muscles(unusable + unsolved)
+        loads.discard_muscles(unusable + unsolved)
         return MuscleAnalysis(
             lift_id=origin.lift_id,
             source=origin.source,
@@ -177,14 +162,14 @@ class BlockSolver:
             joint_names=self._loads.joint_names,
             joint_force=loads.joint_force,
             joint_moment=loads.joint_moment,
-            torque_status=np.array(torque_status, np.int64),
+            torque_status=np.array(statuses, np.int64),
             reports=tuple(reports),
             spine_reports=tuple(spine_reports),
             **_results(arrays),
         )
 
-    def _outside(self, motion: BodyMotion) -> Loaded:
-        """Give the wrenches of ground and box."""
+    def _external(self, motion: BodyMotion) -> Loaded:
+        """Return the wrenches of ground and box."""
         if motion.point_names != self._point_names:
             self._hands = _numbers(HANDS, motion.point_names)
             self._point_names = motion.point_names
@@ -201,26 +186,24 @@ class BlockSolver:
         )
 
     def _spine_report(self, report: SolveReport, weak: BoolArray) -> SolveReport:
-        """Give the report of the L5-S1 load of a sample."""
+        """Return the report of the L5-S1 load of a sample."""
         if report.status is not SolveStatus.MUSCLE_TOO_WEAK:
             return report
         names = [self._loads.coordinate_names[j] for j in np.flatnonzero(weak)]
-        return verdict.spine(report, names, self._loads.lumbar)
+        return spine_report(report, names, self._loads.lumbar)
 
-    def _ground_problem(self, given: Loaded, motion: BodyMotion, k: int) -> verdict.Problem:
-        """Say what is wrong with the feet of a sample that have no centre of pressure."""
+    def _ground_issue(self, given: Loaded, motion: BodyMotion, k: int) -> Issue:
+        """Return the issue of a sample with a loaded foot that has no centre of pressure."""
         if given.complete[k]:
-            return verdict.NONE
+            return NO_ISSUE
         loaded = given.loaded[k]
         if not loaded.any():
-            return verdict.Problem(
-                SolveStatus.MUSCLE_NO_GROUND_FORCE, 'no foot is on a force plate'
-            )
+            return Issue(SolveStatus.MUSCLE_NO_GROUND_FORCE, 'no foot is on a force plate')
         side = int(np.argmin(loaded))
         size = float(np.linalg.norm(motion.ground_force[k, side]))
-        if size <= LOADED_SHARE * self._weight:
-            return verdict.NONE
-        return verdict.Problem(
+        if size <= LOADED_FRACTION * self._weight:
+            return NO_ISSUE
+        return Issue(
             SolveStatus.MUSCLE_BAD_INPUT,
             f'{SIDES[side]} foot: ground force of {size:.0f} N without centre of pressure',
         )
@@ -231,24 +214,24 @@ def _numbers(wanted: tuple[str, ...], names: tuple[str, ...]) -> IntArray:
 
 
 def _results(arrays: SolvedArrays) -> dict[str, Any]:
-    """Give the arrays that are results as they come."""
+    """Return the arrays that are results without a change."""
     named = arrays._asdict()
     del named['missed']
     return named
 
 
-def _fit_problem(poses: TransferredMotion, k: int) -> verdict.Problem:
-    """Say what is wrong with the transfer of a sample."""
+def _transfer_issue(poses: TransferredMotion, k: int) -> Issue:
+    """Return the issue of a sample whose transfer did not converge."""
     if poses.converged[k]:
-        return verdict.NONE
-    return verdict.Problem(
+        return NO_ISSUE
+    return Issue(
         SolveStatus.MUSCLE_TRANSFER_FAILED,
         f'transfer not converged in {poses.iterations[k]} iterations',
     )
 
 
 def _transfer_notes(poses: TransferredMotion, arrays: SolvedArrays, k: int) -> list[str]:
-    """Say where the transfer of a sample misses its goals."""
+    """Return notes on the goals that the transfer of a sample misses."""
     notes = []
     if arrays.missed[k]:
         for what, values, goal, factor, unit in (

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Muscle forces and L5-S1 reaction of the musculoskeletal model in one state of motion.
 
-Inverse dynamics gives the torques, static optimisation (equation 4.10) shares them among the
-muscles, and what the muscles do to the bodies gives the joint reaction (equation 4.11).
+Inverse dynamics gives the torques, static optimisation (equation 4.10) distributes them over
+the muscles, and the muscle forces give the joint reactions (equation 4.11).
 Everything here is in OpenSim's axes.
 """
 
@@ -16,25 +16,24 @@ import numpy as np
 
 from human_model.report import SolveReport
 from human_model.typing import Array
+from muscle_analyzer.core.boxed_tuple import boxed
 from muscle_analyzer.core.exceptions import InputArrayError
-from muscle_analyzer.core.held import hold
 from muscle_analyzer.core.loads.disc_frame import DiscLoad, disc_option, disc_setting
 from muscle_analyzer.core.loads.joint_loads import JointLoad, JointLoadFrames, lumbosacral_body
 from muscle_analyzer.core.loads.options import MuscleAnalyzerOptions
-from muscle_analyzer.core.loads.sample import ANSWER, ASK, WHOLE, solve_frames
-from muscle_analyzer.core.loads.sample_data import FrameLoads, FrameModel, no_loads, room_for_frame
+from muscle_analyzer.core.loads.sample import solve_samples
+from muscle_analyzer.core.loads.sample_data import (
+    SampleLoads,
+    SampleModel,
+    allocate_loads,
+    allocate_workspace,
+)
 from muscle_analyzer.core.multibody.joint_reaction import NetMoment
 from muscle_analyzer.core.multibody.model import MultibodyModel
 from muscle_analyzer.core.muscles.curves import MuscleParameters
 from muscle_analyzer.core.muscles.path_table import path_table
-from muscle_analyzer.core.recruitment.muscle_recruitment import Account
 from muscle_analyzer.core.recruitment.reserves import read_reserves
-from muscle_analyzer.core.recruitment.static_optimization import (
-    Criterion,
-    MuscleBalance,
-    Outcome,
-    StaticOptimization,
-)
+from muscle_analyzer.core.recruitment.static_optimization import MuscleBalance, StaticOptimization
 from muscle_analyzer.core.recruitment.weights import least_activations, muscle_weights
 
 #: Bodies and coordinates of the lifting full-body model that the analysis asks for.
@@ -43,7 +42,6 @@ KNEES = ('knee_angle_r', 'knee_angle_l')
 ROOT_COORDINATES = 'pelvis_'
 #: Coordinates of the lumbar joints: every muscle that crosses L5-S1 works on them.
 LUMBAR_COORDINATES = 'L5_S1_'
-_NOTHING = np.empty((0, 0, 0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,7 +117,7 @@ class LoadSolver:
             muscle_weights(muscles, options.muscle_weighting),
             least_activations(self.muscle_names, options.abdominal_activation),
         )
-        self._frame = FrameModel(
+        self.sample_model = SampleModel(
             tree=model.tree,
             paths=path_table(model, options.geodesic_wrapping),
             muscles=muscles,
@@ -135,10 +133,10 @@ class LoadSolver:
             force_length_velocity=bool(options.force_length_velocity),
             passive_force=bool(options.passive_force),
         )
-        self._held = hold((self._frame, room_for_frame(self._frame)))
+        self._boxed = boxed((self.sample_model, allocate_workspace(self.sample_model)))
 
     def reset(self) -> None:
-        """Forget the state solved before."""
+        """Clear the warm start."""
         self.optimization.reset()
 
     def solve(self, q: Array, qd: Array, qdd: Array, external: Array) -> LoadSolution:
@@ -160,7 +158,7 @@ class LoadSolver:
         loads = self.solve_block(q[None], qd[None], qdd[None], external[None])
         return self.solution(loads, 0, time.perf_counter() - began)
 
-    def solve_block(self, q: Array, qd: Array, qdd: Array, external: Array) -> FrameLoads:
+    def solve_block(self, q: Array, qd: Array, qdd: Array, external: Array) -> SampleLoads:
         """Solve states that follow each other.
 
         Parameters
@@ -174,22 +172,21 @@ class LoadSolver:
         InputArrayError
             If a torque or moment arm is not finite.
         """
-        motion = (
+        out = allocate_loads(self.sample_model, len(q))
+        solve_samples(
+            self._boxed,
             np.ascontiguousarray(q, np.float64),
             np.ascontiguousarray(qd, np.float64),
             np.ascontiguousarray(qdd, np.float64),
             np.ascontiguousarray(external, np.float64),
+            self.optimization.warm_start,
+            out,
         )
-        out = no_loads(self._frame, len(q))
-        if self.optimization.criterion is Criterion.MIN_MAX:
-            self._min_max(motion, out)
-        else:
-            solve_frames(self._held, *motion, WHOLE, self.optimization.past, out, _NOTHING)
-            self._check(out)
+        self._check(out)
         return out
 
-    def solution(self, loads: FrameLoads, k: int, solve_time: float) -> LoadSolution:
-        """Give the loads in one state of a block.
+    def solution(self, loads: SampleLoads, k: int, solve_time: float) -> LoadSolution:
+        """Return the loads in one state of a block.
 
         Parameters
         ----------
@@ -200,9 +197,7 @@ class LoadSolver:
         solve_time
             To be reported [s].
         """
-        outcome = _outcome(loads, k)
-        found = Account(*loads.account[k].tolist())
-        balance = self.optimization.balance(outcome, found, 0.0, solve_time)
+        balance = self.optimization.balance(loads.recruitment(k), 0.0, solve_time)
         joints = JointLoad(loads.joint_force[k], loads.joint_moment[k])
         l5 = self.lumbosacral
         above, below = loads.net_moment[k]
@@ -211,16 +206,16 @@ class LoadSolver:
             torque=loads.torque[k],
             balance=balance,
             reaction=loads.reaction[k],
-            disc=DiscLoad(joints.force[l5], joints.moment[l5]) if outcome.converged else None,
+            disc=DiscLoad(joints.force[l5], joints.moment[l5]) if balance.converged else None,
             joints=joints,
             net=NetMoment(above, below, above - below),
             residual=loads.pelvis_residual[k],
         )
 
     def report(
-        self, loads: FrameLoads, k: int, build_time: float, solve_time: float
+        self, loads: SampleLoads, k: int, build_time: float, solve_time: float
     ) -> SolveReport:
-        """Give the report of one state of a block.
+        """Return the report of one state of a block.
 
         Parameters
         ----------
@@ -231,25 +226,9 @@ class LoadSolver:
         build_time, solve_time
             To be reported [s].
         """
-        found = Account(*loads.account[k].tolist())
-        return self.optimization.report(_outcome(loads, k), found, build_time, solve_time)
+        return self.optimization.report(loads.recruitment(k), build_time, solve_time)
 
-    def _min_max(self, motion: tuple[Array, Array, Array, Array], out: FrameLoads) -> None:
-        """Solve states with the criterion that has an optimiser of its own."""
-        n = len(out.wrong)
-        matrix = np.zeros((n, len(self.coordinate_names), len(self.muscle_names)))
-        held, optimization = self._held, self.optimization
-        solve_frames(held, *motion, ASK, optimization.past, out, matrix)
-        self._check(out)
-        for k in range(n):
-            outcome, found = optimization.share(matrix[k], out.to_balance[k])
-            out.activation[k], out.reserve[k] = outcome.activation, outcome.reserve
-            out.multiplier[k], out.residual[k] = outcome.multiplier, outcome.residual
-            out.iterations[k], out.converged[k] = outcome.iterations, outcome.converged
-            out.weak[k], out.account[k] = outcome.weak, found
-        solve_frames(held, *motion, ANSWER, optimization.past, out, matrix)
-
-    def _check(self, loads: FrameLoads) -> None:
+    def _check(self, loads: SampleLoads) -> None:
         if loads.wrong.max(initial=-1) < 0:
             return
         k = int(np.argmax(loads.wrong >= 0))
@@ -258,16 +237,3 @@ class LoadSolver:
             f'coordinate {self.coordinate_names[j]}: torque {loads.torque[k, j]} or moment arms '
             'are not finite'
         )
-
-
-def _outcome(loads: FrameLoads, k: int) -> Outcome:
-    """Give what the optimisation found in one state of a block."""
-    return Outcome(
-        loads.activation[k],
-        loads.reserve[k],
-        loads.multiplier[k],
-        loads.residual[k],
-        loads.weak[k],
-        int(loads.iterations[k]),
-        bool(loads.converged[k]),
-    )

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the analysis of a frame needs to know, where it works, and what it gives."""
+"""Model, workspace and results of the analysis of a sample of motion."""
 
 from __future__ import annotations
 
@@ -11,18 +11,22 @@ import numpy as np
 from human_model.typing import Array, BoolArray, IntArray
 from muscle_analyzer.core.loads.disc_frame import DiscSetting
 from muscle_analyzer.core.loads.joint_loads import JointFrames
-from muscle_analyzer.core.multibody.inverse_dynamics import InverseDynamics, room_for_dynamics
-from muscle_analyzer.core.multibody.kinematics import BodyState, KinematicsRoom, room_for_bodies
+from muscle_analyzer.core.multibody.inverse_dynamics import InverseDynamics, allocate_dynamics
+from muscle_analyzer.core.multibody.kinematics import (
+    BodyState,
+    KinematicsWorkspace,
+    allocate_kinematics,
+)
 from muscle_analyzer.core.multibody.model import Tree
 from muscle_analyzer.core.muscles.curves import MuscleParameters
 from muscle_analyzer.core.muscles.path_table import PathTable
-from muscle_analyzer.core.muscles.paths import CrossedPaths, PathRoom, room_for_paths
+from muscle_analyzer.core.muscles.paths import CrossedPaths, PathWorkspace, allocate_paths
 from muscle_analyzer.core.recruitment.dual_newton import Columns
-from muscle_analyzer.core.recruitment.muscle_recruitment import Actuators
+from muscle_analyzer.core.recruitment.muscle_recruitment import Actuators, Recruitment, Residuals
 
 
-class FrameModel(NamedTuple):
-    """Everything about a model that a frame needs.
+class SampleModel(NamedTuple):
+    """Everything about a model that the analysis of a sample needs.
 
     Attributes
     ----------
@@ -60,15 +64,15 @@ class FrameModel(NamedTuple):
     passive_force: bool
 
 
-class FrameRoom(NamedTuple):
-    """Where a frame is worked out: made once, and written to anew by every frame.
+class Workspace(NamedTuple):
+    """Arrays that the analysis of a sample writes to: allocated once, overwritten by every sample.
 
     Attributes
     ----------
-    kinematics : KinematicsRoom
+    kinematics : KinematicsWorkspace
     state : BodyState
     dynamics : InverseDynamics
-    path_room : PathRoom
+    path_workspace : PathWorkspace
     paths : CrossedPaths
     speed : (n_m,)
         Of the paths, lengthening positive [m/s].
@@ -90,10 +94,10 @@ class FrameRoom(NamedTuple):
         Wrenches at L5-S1: of what it carries, and of what is left over at the root.
     """
 
-    kinematics: KinematicsRoom
+    kinematics: KinematicsWorkspace
     state: BodyState
     dynamics: InverseDynamics
-    path_room: PathRoom
+    path_workspace: PathWorkspace
     paths: CrossedPaths
     speed: Array
     active: Array
@@ -107,17 +111,17 @@ class FrameRoom(NamedTuple):
     net: Array
 
 
-def room_for_frame(model: FrameModel) -> FrameRoom:
-    """Make room for the frames of a model."""
+def allocate_workspace(model: SampleModel) -> Workspace:
+    """Return the workspace of a model."""
     n_b, n_m, n_c = model.tree.parent.size, model.actuators.lower.size, model.balanced.size
     n_k = model.paths.crossed_index.size
-    kinematics, state = room_for_bodies(model.tree)
-    path_room, paths = room_for_paths(model.paths, n_b)
-    return FrameRoom(
+    kinematics, state = allocate_kinematics(model.tree)
+    path_workspace, paths = allocate_paths(model.paths, n_b)
+    return Workspace(
         kinematics=kinematics,
         state=state,
-        dynamics=room_for_dynamics(model.tree),
-        path_room=path_room,
+        dynamics=allocate_dynamics(model.tree),
+        path_workspace=path_workspace,
         paths=paths,
         speed=np.empty(n_m),
         active=np.empty(n_m),
@@ -132,26 +136,26 @@ def room_for_frame(model: FrameModel) -> FrameRoom:
     )
 
 
-class FrameLoads(NamedTuple):
-    """Solutions of n frames.
+class SampleLoads(NamedTuple):
+    """Solutions of n samples.
 
     Attributes
     ----------
     activation, force : (n, n_m)
         Muscle forces along the tendon [N].
     torque, to_balance : (n, n_c)
-        See `FrameRoom`.
-    reserve, multiplier, residual : (n, n_c)
+        See `Workspace`.
+    reserve, multiplier, imbalance : (n, n_c)
         Torque of the reserves, dual solution, what is not balanced [N m, 1 / (N m), N m].
     weak : (n, n_c) bool
         Whether the muscles of a coordinate are too weak.
-    account : (n, 3)
-        See `muscle_recruitment.Account`.
+    residuals : (n, 3)
+        See `muscle_recruitment.Residuals`.
     iterations : (n,) int
     converged : (n,) bool
     wrong : (n,) int
         First coordinate whose torque or moment arms are not finite, or -1; nothing else of such a
-        frame is to be used.
+        sample is valid.
     reaction : (n, 6)
         Moment about the L5-S1 joint's centre and force of S1 on L5 [N m, N].
     disc_pose : (n, 3, 4)
@@ -170,9 +174,9 @@ class FrameLoads(NamedTuple):
     to_balance: Array
     reserve: Array
     multiplier: Array
-    residual: Array
+    imbalance: Array
     weak: BoolArray
-    account: Array
+    residuals: Array
     iterations: IntArray
     converged: BoolArray
     wrong: IntArray
@@ -183,20 +187,47 @@ class FrameLoads(NamedTuple):
     net_moment: Array
     pelvis_residual: Array
 
+    def recruitment(self, k: int) -> Recruitment:
+        """Return the solution of the static optimisation in sample k."""
+        return Recruitment(
+            self.activation[k],
+            self.reserve[k],
+            self.multiplier[k],
+            self.imbalance[k],
+            self.weak[k],
+            int(self.iterations[k]),
+            bool(self.converged[k]),
+            Residuals(*self.residuals[k].tolist()),
+        )
 
-def no_loads(model: FrameModel, n: int) -> FrameLoads:
-    """Give room for the solutions of n frames."""
+    def discard_dynamics(self, samples: list[int]) -> None:
+        """Set to NaN the results that depend on motion and external forces alone."""
+        if samples:
+            for array in (self.torque, self.net_moment, self.pelvis_residual, self.disc_pose):
+                array[samples] = np.nan
+
+    def discard_muscles(self, samples: list[int]) -> None:
+        """Set to NaN the results that depend on the muscle forces."""
+        if samples:
+            for array in (
+                self.activation, self.force, self.reserve, self.joint_force, self.joint_moment,
+            ):  # fmt: skip
+                array[samples] = np.nan
+
+
+def allocate_loads(model: SampleModel, n: int) -> SampleLoads:
+    """Return arrays for the solutions of n samples."""
     n_m, n_c, n_j = model.actuators.lower.size, model.balanced.size, model.joints.body.size
-    return FrameLoads(
+    return SampleLoads(
         activation=np.empty((n, n_m)),
         force=np.empty((n, n_m)),
         torque=np.empty((n, n_c)),
         to_balance=np.empty((n, n_c)),
         reserve=np.empty((n, n_c)),
         multiplier=np.empty((n, n_c)),
-        residual=np.empty((n, n_c)),
+        imbalance=np.empty((n, n_c)),
         weak=np.empty((n, n_c), np.bool_),
-        account=np.empty((n, 3)),
+        residuals=np.empty((n, 3)),
         iterations=np.empty(n, np.int64),
         converged=np.empty(n, np.bool_),
         wrong=np.empty(n, np.int64),

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a sample is good for: muscle forces, L5-S1 load and joint torques are judged apart.
+"""Status of a sample, separate for muscle forces, L5-S1 load and joint torques.
 
-Muscles that are too weak at the hip make the muscle forces of a sample doubtful.  They do not
-make its L5-S1 load useless, which hangs on what balances the lumbar joints, and joint torques do
-not hang on muscles at all.
+Muscles that are too weak at the hip make the muscle forces of a sample doubtful.  Its L5-S1 load
+stays valid, because it depends on the muscles at the lumbar joints; joint torques do not depend
+on muscles.
 """
 
 from __future__ import annotations
@@ -23,61 +23,64 @@ UNUSABLE = (
 
 
 @dataclass(frozen=True)
-class Problem:
-    """What is wrong with a sample before it is solved.
+class Issue:
+    """Reason why a sample cannot be solved.
 
     Attributes
     ----------
     status
-        OK: nothing.
+        OK if there is none.
     message
-        In words.
     """
 
     status: SolveStatus = SolveStatus.OK
     message: str = ''
 
 
-#: Nothing is wrong.
-NONE = Problem()
+#: Of a usable sample.
+NO_ISSUE = Issue()
 
 
-def tracker_problem(status: int) -> Problem:
-    """Give what a sample's tracker status means for its analysis; only 0 is usable."""
+def tracker_issue(status: int) -> Issue:
+    """Return the issue of a sample's tracker status; only 0 is usable."""
     if status == 0:
-        return NONE
+        return NO_ISSUE
     known = status in SolveStatus.__members__.values()
     message = f'motion tracker: {SolveStatus(status).name if known else f"status {status}"}'
     if status == SolveStatus.TRACKER_NO_GROUND_FORCE:
-        return Problem(SolveStatus.MUSCLE_NO_GROUND_FORCE, message)
-    return Problem(SolveStatus.MUSCLE_BAD_INPUT, message)
+        return Issue(SolveStatus.MUSCLE_NO_GROUND_FORCE, message)
+    return Issue(SolveStatus.MUSCLE_BAD_INPUT, message)
 
 
-def overall(report: SolveReport, problems: Sequence[Problem], notes: Sequence[str]) -> SolveReport:
-    """Give the report of a sample: the first problem decides, then the optimisation.
+def overall_report(
+    report: SolveReport, issues: Sequence[Issue], notes: Sequence[str]
+) -> SolveReport:
+    """Return the report of a sample: the first issue decides, then the optimisation.
 
     Parameters
     ----------
     report
         Of the optimisation.
-    problems
-        Of the sample, the gravest first.
+    issues
+        Of the sample, the most severe first.
     notes
-        What else is to be known.
+        Further remarks.
     """
-    found = [problem for problem in problems if problem.status is not SolveStatus.OK]
-    if not found and not notes:
+    severe = [issue for issue in issues if issue.status is not SolveStatus.OK]
+    if not severe and not notes:
         return report
-    texts = [problem.message for problem in found] + [report.message, *notes]
+    texts = [issue.message for issue in severe] + [report.message, *notes]
     return replace(
         report,
-        status=found[0].status if found else report.status,
+        status=severe[0].status if severe else report.status,
         message='; '.join(text for text in texts if text),
     )
 
 
-def spine(report: SolveReport, unbalanced: Sequence[str], lumbar: Sequence[str]) -> SolveReport:
-    """Give the report of the L5-S1 load.
+def spine_report(
+    report: SolveReport, unbalanced: Sequence[str], lumbar: Sequence[str]
+) -> SolveReport:
+    """Return the report of the L5-S1 load.
 
     Parameters
     ----------
@@ -96,13 +99,13 @@ def spine(report: SolveReport, unbalanced: Sequence[str], lumbar: Sequence[str])
     return replace(report, message=f'L5-S1 not balanced at {", ".join(weak)}; {report.message}')
 
 
-def torques(report: SolveReport) -> SolveStatus:
-    """Give the status of the joint torques, which need motion and forces but no muscles."""
+def torque_status(report: SolveReport) -> SolveStatus:
+    """Return the status of the joint torques, which need motion and forces but no muscles."""
     return report.status if report.status in UNUSABLE else SolveStatus.OK
 
 
-def worst(reports: Sequence[SolveReport], time: Sequence[float]) -> SolveReport:
-    """Give the report of a block: that of its worst sample, with how many others are not good.
+def worst_report(reports: Sequence[SolveReport], time: Sequence[float]) -> SolveReport:
+    """Return the report of a block: that of its worst sample, with how many others are not good.
 
     Parameters
     ----------

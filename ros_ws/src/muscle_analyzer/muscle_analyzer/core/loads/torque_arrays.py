@@ -10,7 +10,7 @@ import numpy as np
 
 from human_model.compiled_cache import njit
 from human_model.typing import Array, BoolArray, IntArray
-from muscle_analyzer.core.held import Held
+from muscle_analyzer.core.boxed_tuple import Boxed
 
 
 class TorqueTable(NamedTuple):
@@ -73,7 +73,7 @@ def _axis(quaternion: Array, number: int) -> tuple[float, float, float]:
 
 @njit(error_model='numpy')
 def torques_and_limits(
-    held: Held[TorqueTable],
+    boxed: Boxed[TorqueTable],
     position: Array,
     velocity: Array,
     frames: Array,
@@ -85,7 +85,7 @@ def torques_and_limits(
 
     Parameters
     ----------
-    held : Held of TorqueTable
+    boxed : Boxed of TorqueTable
     position, velocity : (n, n_s)
         Of the motion's skeleton [rad or m, per s].
     frames : (n, n_f, 4)
@@ -97,7 +97,7 @@ def torques_and_limits(
     torque : (n, n_c)
         Of the balanced coordinates [N m].
     """
-    table = held.content
+    table = boxed.content
     n, n_j = len(position), len(table.sign)
     out, lower, upper = np.empty((n, n_j)), np.empty((n, n_j)), np.empty((n, n_j))
     for k in range(n):

@@ -21,8 +21,8 @@ from human_model.motion import BodyMotion
 from human_model.strength import JointStrength
 from human_model.subject import Subject
 from human_model.typing import Array
+from muscle_analyzer.core.boxed_tuple import boxed
 from muscle_analyzer.core.exceptions import InputArrayError, OptionError
-from muscle_analyzer.core.held import hold
 from muscle_analyzer.core.loads.analysis import MuscleAnalysis
 from muscle_analyzer.core.loads.torque_arrays import TorqueTable, torques_and_limits
 
@@ -173,7 +173,7 @@ class TorqueLimits:
             },
         )
         self._coordinates: tuple[str, ...] = ()
-        self._held = hold(self._table)
+        self._boxed = boxed(self._table)
 
     def of(self, analysis: MuscleAnalysis, motion: BodyMotion) -> JointTorques:
         """Put the torques of an analysis beside the strength in the motion's posture and speed.
@@ -197,9 +197,9 @@ class TorqueLimits:
             )
         if analysis.coordinate_names != self._coordinates:
             self._coordinates = analysis.coordinate_names
-            self._held = hold(self._table._replace(source=self._sources()))
+            self._boxed = boxed(self._table._replace(source=self._sources()))
         torque, lower, upper = torques_and_limits(
-            self._held,
+            self._boxed,
             motion.position,
             motion.velocity,
             motion.frames,

@@ -113,12 +113,12 @@ def _inertial_wrenches(tree: Tree, state: BodyState, out: Array) -> None:
 def subtree_sum(tree: Tree, wrenches: Array) -> Array:
     """Return for every body the sum (n_b, 6) of the wrenches of it and all that it carries."""
     total = wrenches.copy()
-    carry(tree.parent, total)
+    accumulate_subtrees(tree.parent, total)
     return total
 
 
 @kernel
-def carry(parent: NDArray[np.int64], wrenches: Array) -> None:
+def accumulate_subtrees(parent: NDArray[np.int64], wrenches: Array) -> None:
     """Add to the wrenches (n_b, 6) on each body those on all that it carries, in place."""
     for b in range(parent.size - 1, 0, -1):
         for i in range(6):
@@ -137,14 +137,14 @@ def inverse_dynamics(tree: Tree, state: BodyState, external: Array) -> InverseDy
     external : (n_b, 6) array
         Wrenches on the bodies from outside (ground, box), without weight; see `add_force`.
     """
-    found = room_for_dynamics(tree)
-    balance_motion(tree, state, external, found)
+    found = allocate_dynamics(tree)
+    compute_inverse_dynamics(tree, state, external, found)
     return found
 
 
 @njit
-def room_for_dynamics(tree: Tree) -> InverseDynamics:
-    """Return room for `balance_motion`."""
+def allocate_dynamics(tree: Tree) -> InverseDynamics:
+    """Return workspace for `compute_inverse_dynamics`."""
     return InverseDynamics(
         np.zeros((tree.parent.size, 6)),
         np.zeros(tree.independent.size),
@@ -153,7 +153,9 @@ def room_for_dynamics(tree: Tree) -> InverseDynamics:
 
 
 @kernel
-def balance_motion(tree: Tree, state: BodyState, external: Array, out: InverseDynamics) -> None:
+def compute_inverse_dynamics(
+    tree: Tree, state: BodyState, external: Array, out: InverseDynamics
+) -> None:
     """Fill joint wrenches and generalised forces as `inverse_dynamics` gives them."""
     joint_wrench, tree_force, force = out
     for i in range(6):
@@ -162,7 +164,7 @@ def balance_motion(tree: Tree, state: BodyState, external: Array, out: InverseDy
     for b in range(tree.parent.size):
         for i in range(6):
             joint_wrench[b, i] -= external[b, i]
-    carry(tree.parent, joint_wrench)
+    accumulate_subtrees(tree.parent, joint_wrench)
     tree_force.fill(0.0)
     force.fill(0.0)
     for b in range(1, tree.parent.size):

@@ -19,7 +19,7 @@ import numpy as np
 
 from human_model.compiled_cache import kernel, njit
 from human_model.typing import Array
-from muscle_analyzer.core.multibody.inverse_dynamics import carry, wrench_at
+from muscle_analyzer.core.multibody.inverse_dynamics import accumulate_subtrees, wrench_at
 from muscle_analyzer.core.multibody.kinematics import BodyState
 from muscle_analyzer.core.multibody.model import Tree
 
@@ -56,14 +56,14 @@ def joint_reactions(tree: Tree, joint_wrench: Array, muscle_wrench: Array) -> Ar
         What all muscles do to the bodies, see `paths.body_wrenches`.
     """
     reaction = muscle_wrench.copy()
-    react(tree, joint_wrench, reaction)
+    compute_joint_reactions(tree, joint_wrench, reaction)
     return reaction
 
 
 @kernel
-def react(tree: Tree, joint_wrench: Array, wrench: Array) -> None:
+def compute_joint_reactions(tree: Tree, joint_wrench: Array, wrench: Array) -> None:
     """Put the `joint_reactions` in place of what all muscles do to the bodies (n_b, 6)."""
-    carry(tree.parent, wrench)
+    accumulate_subtrees(tree.parent, wrench)
     for b in range(wrench.shape[0]):
         for i in range(6):
             wrench[b, i] = joint_wrench[b, i] - wrench[b, i]

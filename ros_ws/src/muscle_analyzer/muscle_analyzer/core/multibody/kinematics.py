@@ -71,8 +71,8 @@ class BodyState(NamedTuple):
     coordinate_gain: Array
 
 
-class KinematicsRoom(NamedTuple):
-    """What `move_bodies` writes to on its way.
+class KinematicsWorkspace(NamedTuple):
+    """Intermediate results of `compute_kinematics`.
 
     Attributes
     ----------
@@ -93,17 +93,17 @@ class KinematicsRoom(NamedTuple):
 
 
 @njit
-def room_for_bodies(tree: Tree) -> tuple[KinematicsRoom, BodyState]:
-    """Return room for `move_bodies` and for its result, full of zeros."""
+def allocate_kinematics(tree: Tree) -> tuple[KinematicsWorkspace, BodyState]:
+    """Return workspace and result of `compute_kinematics`, full of zeros."""
     n_b, n_e, n = tree.parent.size, tree.motion_turns.size, tree.independent.size
     x = CoordinateState(np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n))
-    room = KinematicsRoom(x, np.zeros((n_e, 3)), np.zeros((3, 3)), np.zeros((3, 3)))
+    workspace = KinematicsWorkspace(x, np.zeros((n_e, 3)), np.zeros((3, 3)), np.zeros((3, 3)))
     state = BodyState(
         np.zeros((n_b, 3)), np.zeros((n_b, 3, 3)), np.zeros((n_b, 3)), np.zeros((n_b, 3)),
         np.zeros((n_b, 3)), np.zeros((n_b, 3)), np.zeros((n_b, 3)), np.zeros((n_e, 6)),
         np.zeros(n_e), np.zeros(n_e), x.value, x.gain,
     )  # fmt: skip
-    return room, state
+    return workspace, state
 
 
 @njit(error_model='numpy')
@@ -189,28 +189,29 @@ def forward_kinematics(tree: Tree, q: Array, qd: Array, qdd: Array) -> BodyState
     q, qd, qdd : (n_q,) arrays
         Independent coordinates in rad or m, their rates and accelerations.
     """
-    room, state = room_for_bodies(tree)
-    move_bodies(tree, q, qd, qdd, room, state)
+    workspace, state = allocate_kinematics(tree)
+    compute_kinematics(tree, q, qd, qdd, workspace, state)
     return state
 
 
 @kernel
-def move_bodies(
-    tree: Tree, q: Array, qd: Array, qdd: Array, room: KinematicsRoom, state: BodyState
+def compute_kinematics(
+    tree: Tree, q: Array, qd: Array, qdd: Array, workspace: KinematicsWorkspace, state: BodyState
 ) -> None:
     """Fill the motion of every body as `forward_kinematics` gives it.
 
-    `room` and `state` are those of `room_for_bodies`, or of an earlier state of the same tree.
+    `workspace` and `state` are those of `allocate_kinematics`, or of an earlier state of the
+    same tree.
     """
     parent, first_motion = tree.parent, tree.first_motion
     turns, axis = tree.motion_turns, tree.motion_axis
     parent_rotation, parent_translation = tree.parent_rotation, tree.parent_translation
     child_rotation, child_translation = tree.child_rotation, tree.child_translation
     p, rot, w, v, al, a, pivot, screw, tree_gain, gain = state[:10]
-    move, frame = room.move, room.frame
-    r, r1, r2 = room.shift[0], room.shift[1], room.shift[2]
-    _move_coordinates(tree, q, qd, qdd, room.coordinates)
-    _moves(tree, room.coordinates, move, tree_gain, gain)
+    move, frame = workspace.move, workspace.frame
+    r, r1, r2 = workspace.shift[0], workspace.shift[1], workspace.shift[2]
+    _move_coordinates(tree, q, qd, qdd, workspace.coordinates)
+    _moves(tree, workspace.coordinates, move, tree_gain, gain)
     for i in range(3):
         rot[0, i, i] = 1.0
     for b in range(1, parent.size):

@@ -44,8 +44,8 @@ class Route(NamedTuple):
 
 
 @njit(error_model='numpy', inline='always')
-def room_for_route(longest: int, n_w: int, n_b: int) -> Route:
-    """Make room for paths of at most so many points, in a model of so many wraps and bodies."""
+def allocate_route(longest: int, n_w: int, n_b: int) -> Route:
+    """Return the arrays of a route: at most `longest` points, `n_w` wraps, `n_b` bodies."""
     return Route(
         np.empty((longest, 3)),
         np.empty(longest, np.int64),

@@ -19,7 +19,7 @@ import numpy as np
 from human_model.compiled_cache import kernel, njit
 from human_model.typing import Array, IntArray
 from muscle_analyzer.core.multibody.kinematics import BodyState
-from muscle_analyzer.core.muscles.path_routing import Route, add_span, find_routes, room_for_route
+from muscle_analyzer.core.muscles.path_routing import Route, add_span, allocate_route, find_routes
 from muscle_analyzer.core.muscles.path_table import PathTable, ProductTable, SpanTable
 from muscle_analyzer.core.muscles.path_wrapping import place_surfaces
 from muscle_analyzer.core.osim.functions import evaluate
@@ -62,8 +62,8 @@ class CrossedPaths(NamedTuple):
     wrench: Array
 
 
-class PathRoom(NamedTuple):
-    """What `trace_paths` writes to on its way.
+class PathWorkspace(NamedTuple):
+    """Intermediate results of `compute_muscle_paths`.
 
     Attributes
     ----------
@@ -83,17 +83,17 @@ class PathRoom(NamedTuple):
 
 
 @njit
-def room_for_paths(table: PathTable, n_b: int) -> tuple[PathRoom, CrossedPaths]:
-    """Make room for the paths of a model of n_b bodies, and for what is found about them."""
+def allocate_paths(table: PathTable, n_b: int) -> tuple[PathWorkspace, CrossedPaths]:
+    """Return workspace and result of `compute_muscle_paths`, for a model of n_b bodies."""
     n_m, wraps = table.point_start.size - 1, table.wraps
-    room = PathRoom(
+    workspace = PathWorkspace(
         np.empty((table.products.column_body.size, 6)),
         np.empty(table.point_location.shape),
         np.empty((wraps.body.size, 12)),
-        room_for_route(table.longest[0], wraps.surface.size, n_b),
+        allocate_route(table.longest[0], wraps.surface.size, n_b),
     )
     n_e, n_k = table.body_index.size, table.crossed_index.size
-    return room, CrossedPaths(np.empty(n_m), np.empty(n_k), np.empty((n_e, 6)))
+    return workspace, CrossedPaths(np.empty(n_m), np.empty(n_k), np.empty((n_e, 6)))
 
 
 @kernel
@@ -184,22 +184,22 @@ def _paths(
     rotation: Array,
     coordinate: Array,
     coordinate_gain: Array,
-    room: PathRoom,
+    workspace: PathWorkspace,
     out: CrossedPaths,
 ) -> None:
     """Find all paths; the columns are there."""
     length, arm, wrench = out
     arm.fill(0.0)
     wrench.fill(0.0)
-    _place_points(table, position, rotation, coordinate, room.place)
-    _straight(table.spans, room.place, length, wrench)
+    _place_points(table, position, rotation, coordinate, workspace.place)
+    _straight(table.spans, workspace.place, length, wrench)
     if table.routed.size > 0:
-        place_surfaces(table.wraps, position, rotation, room.frame)
+        place_surfaces(table.wraps, position, rotation, workspace.frame)
         find_routes(
-            table, room.route, room.place, room.frame, rotation, coordinate, coordinate_gain,
-            length, wrench, arm,
+            table, workspace.route, workspace.place, workspace.frame, rotation, coordinate,
+            coordinate_gain, length, wrench, arm,
         )  # fmt: skip
-    _add_moment_arms(table.products, room.column, wrench, arm)
+    _add_moment_arms(table.products, workspace.column, wrench, arm)
 
 
 @njit(error_model='numpy')
@@ -236,9 +236,9 @@ def muscle_paths(
     if table.condition_coordinate.size > 0 or table.motion_coordinate.size > 0:
         raise ValueError('conditional or moving path points need the coordinates: posture_paths')
     none = np.zeros(0)
-    room, found = room_for_paths(table, jacobian.shape[0])
-    _columns_of_jacobians(table.products, jacobian, room.column)
-    _paths(table, body_position, body_rotation, none, none, room, found)
+    workspace, found = allocate_paths(table, jacobian.shape[0])
+    _columns_of_jacobians(table.products, jacobian, workspace.column)
+    _paths(table, body_position, body_rotation, none, none, workspace, found)
     return _with_all_arms(table, found, jacobian.shape[2])
 
 
@@ -255,10 +255,16 @@ def posture_paths(table: PathTable, state: BodyState, jacobian: Array) -> Muscle
     jacobian
         Spatial Jacobians (n_b, 6, n_q) about the ground's origin, (angular, linear).
     """
-    room, found = room_for_paths(table, jacobian.shape[0])
-    _columns_of_jacobians(table.products, jacobian, room.column)
+    workspace, found = allocate_paths(table, jacobian.shape[0])
+    _columns_of_jacobians(table.products, jacobian, workspace.column)
     _paths(
-        table, state.position, state.rotation, state.coordinate, state.coordinate_gain, room, found
+        table,
+        state.position,
+        state.rotation,
+        state.coordinate,
+        state.coordinate_gain,
+        workspace,
+        found,
     )
     return _with_all_arms(table, found, jacobian.shape[2])
 
@@ -266,17 +272,25 @@ def posture_paths(table: PathTable, state: BodyState, jacobian: Array) -> Muscle
 @njit(error_model='numpy')
 def crossed_paths(table: PathTable, state: BodyState) -> CrossedPaths:
     """Compute all paths as `posture_paths`, but without Jacobians and the zeros among the arms."""
-    room, found = room_for_paths(table, state.position.shape[0])
-    trace_paths(table, state, room, found)
+    workspace, found = allocate_paths(table, state.position.shape[0])
+    compute_muscle_paths(table, state, workspace, found)
     return found
 
 
 @kernel
-def trace_paths(table: PathTable, state: BodyState, room: PathRoom, out: CrossedPaths) -> None:
-    """Fill what `crossed_paths` gives; `room` and `out` are those of `room_for_paths`."""
-    _columns_of_motions(table.products, state.screw, state.gain, room.column)
+def compute_muscle_paths(
+    table: PathTable, state: BodyState, workspace: PathWorkspace, out: CrossedPaths
+) -> None:
+    """Fill what `crossed_paths` gives; `workspace` and `out` are those of `allocate_paths`."""
+    _columns_of_motions(table.products, state.screw, state.gain, workspace.column)
     _paths(
-        table, state.position, state.rotation, state.coordinate, state.coordinate_gain, room, out
+        table,
+        state.position,
+        state.rotation,
+        state.coordinate,
+        state.coordinate_gain,
+        workspace,
+        out,
     )
 
 
@@ -297,12 +311,12 @@ def body_wrenches(table: PathTable, wrench: Array, force: Array, n_bodies: int) 
         Moment about the ground's origin [N m] and force [N] on each body, ground axes.
     """
     total = np.empty((n_bodies, 6))
-    pull_bodies(table.body_start, table.body_index, wrench, force, total)
+    apply_muscle_forces(table.body_start, table.body_index, wrench, force, total)
     return total
 
 
 @kernel
-def pull_bodies(
+def apply_muscle_forces(
     start: IntArray, body: IntArray, wrench: Array, force: Array, total: Array
 ) -> None:
     """Fill the sums (n_b, 6) of `body_wrenches`."""

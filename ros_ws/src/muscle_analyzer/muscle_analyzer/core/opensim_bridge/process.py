@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Finds a Python that has OpenSim, and runs the referee in it.
+"""Finds a Python that has OpenSim, and runs the script in it.
 
 OpenSim and CasADi cannot be loaded into one process: both wheels bring their own `libcasadi`. The
-referee is therefore always a process of its own.
+script is therefore always a process of its own.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ def find_opensim(
     return OpenSimPython(path, answer.stdout.strip().splitlines()[-1])
 
 
-def run_referee(
+def run_opensim(
     python: OpenSimPython,
     folder: Path,
     times: Array,
@@ -117,7 +117,7 @@ def run_referee(
         If a tool fails or takes too long; has the end of the log.
     """
     script = Path(__file__).with_name('script.py')
-    log = folder / 'referee.log'
+    log = folder / 'opensim.log'
     command = [str(python.path), '-I', str(script), str(folder.absolute()), '--at']
     command += [f'{time:.17g}' for time in times]
     command += ['--together'] if together else []

@@ -104,11 +104,11 @@ def read_opensim(
     """
     results = folder / files.RESULTS
     model = motion.model
-    referee = _read_referee(results / files.REFEREE_RESULT)
+    stored = _read_script_result(results / files.SCRIPT_RESULT)
     times = motion.time[rows]
-    solved = np.asarray(referee['times'], np.float64)
+    solved = np.asarray(stored['times'], np.float64)
     if solved.shape != times.shape or np.abs(times - solved).max() > SAME_TIME:
-        raise OpenSimError(f'{results / files.REFEREE_RESULT}: at {solved} s, not at {times} s')
+        raise OpenSimError(f'{results / files.SCRIPT_RESULT}: at {solved} s, not at {times} s')
     tables = {
         name: read_storage(results / name)
         for name in (
@@ -118,14 +118,14 @@ def read_opensim(
             files.REACTIONS_RESULT,
         )
     }
-    muscles = [referee['muscles'].index(name) for name in muscle_names]
-    about = [referee['coordinates'].index(name) for name in coordinate_names]
+    muscles = [stored['muscles'].index(name) for name in muscle_names]
+    about = [stored['coordinates'].index(name) for name in coordinate_names]
     reserves = [f'{files.RESERVE_PREFIX}{name}' for name in coordinate_names]
     force = tables[files.FORCES_RESULT]
     answer = Answer(
         torque=_torques(tables[files.TORQUES_RESULT], model.tree_coordinate_names, motion),
-        length=np.array(referee['length'])[:, muscles],
-        moment_arm=np.array(referee['moment_arm'])[:, muscles][:, :, about],
+        length=np.array(stored['length'])[:, muscles],
+        moment_arm=np.array(stored['moment_arm'])[:, muscles][:, :, about],
         activation=tables[files.ACTIVATIONS_RESULT].select(muscle_names)[: rows.size],
         force=force.select(muscle_names)[: rows.size],
         reserve=force.select(reserves)[: rows.size],
@@ -134,10 +134,10 @@ def read_opensim(
     for name in (files.FORCES_RESULT, files.REACTIONS_RESULT):
         if np.abs(tables[name].time[: rows.size] - times).max() > SAME_TIME:
             raise OpenSimError(f'{results / name}: rows at {tables[name].time}, not at {times}')
-    return OpenSimRun(answer, str(referee['opensim']), dict(referee['seconds']))
+    return OpenSimRun(answer, str(stored['opensim']), dict(stored['seconds']))
 
 
-def _read_referee(path: Path) -> dict[str, Any]:
+def _read_script_result(path: Path) -> dict[str, Any]:
     try:
         found: dict[str, Any] = json.loads(path.read_text(encoding='utf-8'))
     except (OSError, ValueError) as error:

@@ -10,7 +10,7 @@ a process of its own because OpenSim and CasADi ship different libraries of one 
 The set-ups in the folder are run as they are: inverse dynamics of the whole motion, static
 optimisation and joint reactions at the given times only, each in a run of its own or, with
 `--together`, in one run from the first to the last. Results go to the folder's `results`, path
-lengths and moment arms to `results/referee.json`.
+lengths and moment arms to `results/opensim.json`.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ INVERSE_DYNAMICS = 'setup_inverse_dynamics.xml'
 STATIC_OPTIMIZATION = 'setup_static_optimization.xml'
 JOINT_REACTION = 'setup_joint_reaction.xml'
 MODEL, COORDINATES, RESULTS = 'model.osim', 'coordinates.mot', 'results'
-ANSWER = 'referee.json'
+ANSWER = 'opensim.json'
 FORCES, ACTIVATIONS, REACTIONS = (
     'lift_StaticOptimization_force.sto',
     'lift_StaticOptimization_activation.sto',

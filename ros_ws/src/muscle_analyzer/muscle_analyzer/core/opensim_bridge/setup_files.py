@@ -40,8 +40,8 @@ TORQUES_RESULT = 'inverse_dynamics.sto'
 FORCES_RESULT = 'lift_StaticOptimization_force.sto'
 ACTIVATIONS_RESULT = 'lift_StaticOptimization_activation.sto'
 REACTIONS_RESULT = 'lift_JointReaction_ReactionLoads.sto'
-#: What the referee writes beside them: path lengths, moment arms, times.
-REFEREE_RESULT = 'referee.json'
+#: Further results of the script: path lengths, moment arms, times.
+SCRIPT_RESULT = 'opensim.json'
 #: Name of the tools, with which their results' file names begin.
 TOOL = 'lift'
 #: The reserve of a coordinate is this and the coordinate's name.

@@ -22,8 +22,8 @@ from human_model.compiled_cache import njit
 from human_model.typing import Array, IntArray
 from muscle_analyzer.core.recruitment.false_position import crossing, narrowed, whole_step
 
-#: A step is taken when the slope of the dual along it has fallen to this share of the first slope.
-SLOPE_SHARE = 0.1
+#: A step is taken when the slope of the dual along it is at most this fraction of the first.
+SLOPE_FRACTION = 0.1
 #: Limit of trials of one line search.
 LINE_TRIALS = 60
 
@@ -228,7 +228,7 @@ def _step_size(
         for i in range(n_m):
             now = _minimiser(pull[i] + size * turn[i], lower[i], upper[i], weight[i], exponent)[0]
             here -= turn[i] * (now - before[i])
-        if abs(here) <= SLOPE_SHARE * first_slope:
+        if abs(here) <= SLOPE_FRACTION * first_slope:
             break
         bracket = narrowed(bracket, size, here)
         size = crossing(bracket)
@@ -304,7 +304,7 @@ def solve_dual(
             activation, slope, gradient,
         )  # fmt: skip
         whole_slope = dot(gradient, step)
-        if whole_slope < -SLOPE_SHARE * first_slope and worst > tolerance:
+        if whole_slope < -SLOPE_FRACTION * first_slope and worst > tolerance:
             size = _step_size(
                 columns, reserve, lower, upper, weight, exponent, multiplier, step,
                 first_slope, whole_slope,

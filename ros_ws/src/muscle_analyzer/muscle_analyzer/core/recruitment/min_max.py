@@ -30,7 +30,7 @@ from human_model.compiled_cache import njit
 from human_model.typing import Array
 from muscle_analyzer.core.recruitment.dual_newton import (
     LINE_TRIALS,
-    SLOPE_SHARE,
+    SLOPE_FRACTION,
     Columns,
     cholesky_solve,
     dot,
@@ -41,9 +41,9 @@ Places = NDArray[np.int8]
 
 #: e of the header: the largest activation exceeds the smallest possible one by at most e times
 #: the sum of squares that this saves.
-SQUARES_SHARE = 1e-3
-#: From nothing, one problem after the other has these shares.
-SHARES = (1.0, 0.1, 0.01, SQUARES_SHARE)
+SQUARES_WEIGHT = 1e-3
+#: From nothing, the problems have these weights, one after the other.
+SQUARES_WEIGHTS = (1.0, 0.1, 0.01, SQUARES_WEIGHT)
 #: Limit of Newton steps from a warm start: from farther away it is quicker to start from nothing.
 WARM_STEPS = 30
 #: Limit of rounds that take off what rounding left.
@@ -53,7 +53,7 @@ LOW, FREE, HIGH = -1, 0, 1
 
 
 class _Problem(NamedTuple):
-    """The problem with one share of the squares.
+    """The problem with one weight e of the squares.
 
     Attributes
     ----------
@@ -109,9 +109,9 @@ def _largest(problem: _Problem, pull: Array, guess: float) -> float:
     for trial in range(pull.size + 2):
         pressed, stiffness = -1.0, 0.0
         for i in range(pull.size):
-            held = pull[i] - problem.curvature[i] * b
-            if held > 0.0:
-                pressed += held
+            excess = pull[i] - problem.curvature[i] * b
+            if excess > 0.0:
+                pressed += excess
                 stiffness += problem.curvature[i]
         following = problem.floor
         if stiffness > 0.0:
@@ -236,7 +236,7 @@ def _step_size(
         for i in range(n_m):
             now = min(max(here[i] / problem.curvature[i], problem.lower[i]), b)
             slope -= turn[i] * (now - before[i])
-        if abs(slope) <= SLOPE_SHARE * first:
+        if abs(slope) <= SLOPE_FRACTION * first:
             break
         bracket = narrowed(bracket, size, slope)
         size = crossing(bracket)
@@ -280,7 +280,7 @@ def _maximise(
         if changed == 0 and freed == 0:
             break
         whole = dot(point.gradient, step)
-        short = whole < -SLOPE_SHARE * first and worst > tolerance
+        short = whole < -SLOPE_FRACTION * first and worst > tolerance
         if short:
             multiplier[:] = begin + step * _step_size(problem, begin, step, guess, first, whole)
             b, worst, _ = _evaluate(problem, point, b)
@@ -336,7 +336,7 @@ def solve_min_max(
     """Make the largest activation smallest.
 
     Parameters are those of `dual_newton.solve_dual`, without the exponent; the limit of Newton
-    steps is that for each share of the squares.
+    steps is that for each weight of the squares.
 
     Returns
     -------
@@ -354,14 +354,16 @@ def solve_min_max(
         multiplier, np.empty(n_m), np.empty(n_m), np.zeros(n_m + 1, np.int8), np.empty(n_c)
     )
     iterations, b, found = 0, floor, False
-    problem = _Problem(columns, reserve, torque, lower, floor, top, 2.0 * SQUARES_SHARE * weight)
+    problem = _Problem(columns, reserve, torque, lower, floor, top, 2.0 * SQUARES_WEIGHT * weight)
     if multiplier.any():
         limit = min(WARM_STEPS, max_iterations)
         b, iterations, found = _maximise(problem, point, tolerance, limit)
     if not found:
         multiplier[:] = 0.0
-        for share in SHARES:
-            problem = _Problem(columns, reserve, torque, lower, floor, top, 2.0 * share * weight)
+        for squares_weight in SQUARES_WEIGHTS:
+            problem = _Problem(
+                columns, reserve, torque, lower, floor, top, 2.0 * squares_weight * weight
+            )
             b, more, found = _maximise(problem, point, tolerance, max_iterations)
             iterations += more
             if not found:

@@ -12,7 +12,6 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,16 +20,7 @@ from human_model.report import SolveReport, SolveStatus
 from human_model.typing import Array
 from muscle_analyzer.core.exceptions import InputArrayError, OptionError
 from muscle_analyzer.core.recruitment.dual_newton import columns_of
-from muscle_analyzer.core.recruitment.min_max import SQUARES_SHARE, solve_min_max
-from muscle_analyzer.core.recruitment.muscle_recruitment import (
-    Account,
-    Actuators,
-    account,
-    first_guess,
-    remember,
-    residual_limit,
-    share_torque,
-)
+from muscle_analyzer.core.recruitment.muscle_recruitment import Actuators, Recruitment, recruit
 from muscle_analyzer.core.recruitment.reserves import Reserve
 
 #: Smallest activation OpenSim 4.6 allows a muscle in static optimisation (``min_control`` of
@@ -81,32 +71,9 @@ class StaticOptimizationOptions:
     max_iterations: int = 100
 
 
-class Outcome(NamedTuple):
-    """What the optimisation found in one frame.
-
-    Attributes
-    ----------
-    activation : (n_m,)
-    reserve, multiplier, residual : (n_c,)
-        Torque the reserves take [N m], dual solution [1 / (N m)], what is not balanced [N m].
-    weak : (n_c,) bool
-        Whether the muscles of a coordinate are too weak.
-    iterations : int
-    converged : bool
-    """
-
-    activation: Array
-    reserve: Array
-    multiplier: Array
-    residual: Array
-    weak: NDArray[np.bool_]
-    iterations: int
-    converged: bool
-
-
 @dataclass(frozen=True)
 class MuscleBalance:
-    """Solution of one frame.
+    """Solution of one sample.
 
     Attributes
     ----------
@@ -114,7 +81,7 @@ class MuscleBalance:
     reserve : (n_c,)
         Torque the reserves take [N m].
     multiplier : (n_c,)
-        Dual solution, the warm start of the next frame [1 / (N m)].
+        Dual solution, the warm start of the next sample [1 / (N m)].
     residual : (n_c,)
         What is not balanced [N m].
     low, full : (n_m,)
@@ -146,12 +113,12 @@ class MuscleBalance:
 
     @property
     def converged(self) -> bool:
-        """Whether the optimum was found, be the muscles strong enough or not."""
+        """Whether the solver converged (even if the muscles were too weak)."""
         return self.report.status is not SolveStatus.MUSCLE_NOT_CONVERGED
 
 
 class StaticOptimization:
-    """Solver of one model, warm-started from frame to frame.
+    """Solver of one model, warm-started from sample to sample.
 
     Parameters
     ----------
@@ -221,21 +188,22 @@ class StaticOptimization:
             lower=lower,
             upper=np.full(len(muscle_names), high, np.float64),
             weight=weight,
+            min_max=self.criterion is Criterion.MIN_MAX,
             exponent=EXPONENTS[self.criterion],
             tolerance=float(self.options.tolerance),
             max_iterations=int(self.options.max_iterations),
         )
-        self.past = np.zeros((2, len(reserves)))
-        # Where a muscle counts as at its bounds: not to be worked out for every frame.
+        self.warm_start = np.zeros((2, len(reserves)))
+        # Activations from which a muscle counts as at its bounds, computed once.
         self._low = self.actuators.lower + AT_BOUND
         self._full = self.actuators.upper - AT_BOUND
 
     def reset(self) -> None:
-        """Forget the frames before."""
-        self.past = np.zeros((2, len(self.coordinate_names)))
+        """Clear the warm start."""
+        self.warm_start = np.zeros((2, len(self.coordinate_names)))
 
     def solve(self, matrix: Array, torque: Array) -> MuscleBalance:
-        """Share the torques of one frame among the muscles.
+        """Distribute the torques of one sample over the muscles.
 
         Parameters
         ----------
@@ -252,78 +220,48 @@ class StaticOptimization:
         began = time.perf_counter()
         matrix, torque = self._checked(matrix, torque)
         built = time.perf_counter()
-        outcome, found = self.share(matrix, torque)
-        return self.balance(outcome, found, built - began, time.perf_counter() - built)
-
-    def share(self, matrix: Array, torque: Array) -> tuple[Outcome, Account]:
-        """Share the torques of one frame as `solve`, whose input has been checked."""
-        columns = columns_of(matrix)
-        multiplier = first_guess(self.past)
-        share, cap, at_top = 1.0, np.inf, 0.0
-        if self.criterion is Criterion.MIN_MAX:
-            a = self.actuators
-            activation, residual, iterations, converged, cap = solve_min_max(
-                columns, a.unit, torque, a.lower, a.upper, a.weight, multiplier,
-                residual_limit(a, torque), a.max_iterations,
-            )  # fmt: skip
-            share, at_top = SQUARES_SHARE, cap
-        else:
-            activation, residual, iterations, converged = share_torque(
-                self.actuators, columns, torque, multiplier
-            )
-        remember(self.past, multiplier, converged)
-        reserve, weak = np.empty(torque.size), np.empty(torque.size, np.bool_)
-        found = account(
-            self.actuators, columns, torque, activation, residual, multiplier, share, cap,
-            reserve, weak,
-        )  # fmt: skip
-        found = found._replace(objective=found.objective + at_top)
-        outcome = Outcome(activation, reserve, multiplier, residual, weak, iterations, converged)
-        return outcome, found
+        solution = recruit(self.actuators, columns_of(matrix), torque, self.warm_start)
+        return self.balance(solution, built - began, time.perf_counter() - built)
 
     def balance(
-        self, outcome: Outcome, found: Account, build_time: float, solve_time: float
+        self, solution: Recruitment, build_time: float, solve_time: float
     ) -> MuscleBalance:
-        """Put a solution into words.
+        """Return a solution with its report and the names of what is not balanced.
 
         Parameters
         ----------
-        outcome
-            The solution.
-        found
-            Account of it.
+        solution
+            Of `recruit`.
         build_time, solve_time
             To build and to solve the problem [s].
         """
         return MuscleBalance(
-            activation=outcome.activation,
-            reserve=outcome.reserve,
-            multiplier=outcome.multiplier,
-            residual=outcome.residual,
+            activation=solution.activation,
+            reserve=solution.reserve,
+            multiplier=solution.multiplier,
+            residual=solution.imbalance,
             low=self._low,
             full=self._full,
-            unbalanced=tuple([self.coordinate_names[j] for j in _places(outcome.weak)]),
-            report=self.report(outcome, found, build_time, solve_time),
+            unbalanced=tuple([self.coordinate_names[j] for j in _places(solution.weak)]),
+            report=self.report(solution, build_time, solve_time),
         )
 
-    def report(
-        self, outcome: Outcome, found: Account, build_time: float, solve_time: float
-    ) -> SolveReport:
-        """Give the report of a solution alone; parameters as in `balance`."""
-        status, message = self._verdict(outcome)
+    def report(self, solution: Recruitment, build_time: float, solve_time: float) -> SolveReport:
+        """Return the report of a solution alone; parameters as in `balance`."""
+        status, message = self._status(solution)
         return SolveReport(
             status=status,
             message=message,
-            iterations=int(outcome.iterations),
-            objective=float(found.objective),
-            primal_residual=float(found.primal),
-            dual_residual=float(found.dual),
+            iterations=int(solution.iterations),
+            objective=float(solution.residuals.objective),
+            primal_residual=float(solution.residuals.primal),
+            dual_residual=float(solution.residuals.dual),
             build_time=build_time,
             solve_time=solve_time,
         )
 
     def _checked(self, matrix: Array, torque: Array) -> tuple[Array, Array]:
-        """Give the input as contiguous arrays of the right shape and finite numbers."""
+        """Return the input as contiguous arrays of the right shape and finite numbers."""
         matrix = np.ascontiguousarray(matrix, dtype=np.float64)
         torque = np.ascontiguousarray(torque, dtype=np.float64)
         shape = (len(self.coordinate_names), len(self.muscle_names))
@@ -341,22 +279,22 @@ class StaticOptimization:
             )
         return matrix, torque
 
-    def _verdict(self, outcome: Outcome) -> tuple[SolveStatus, str]:
-        """Say what happened, naming coordinates and muscles."""
-        if not outcome.converged:
-            j = int(np.abs(outcome.residual).argmax())
+    def _status(self, solution: Recruitment) -> tuple[SolveStatus, str]:
+        """Return status and message, with the names of coordinates and muscles."""
+        if not solution.converged:
+            j = int(np.abs(solution.imbalance).argmax())
             return SolveStatus.MUSCLE_NOT_CONVERGED, (
                 f'static optimisation not converged: {self.coordinate_names[j]} is off by '
-                f'{outcome.residual[j]:.3g} N m'
+                f'{solution.imbalance[j]:.3g} N m'
             )
-        full, weak = _places(outcome.activation >= self._full), _places(outcome.weak)
+        full, weak = _places(solution.activation >= self._full), _places(solution.weak)
         bound = ''
         if full:
             names = [self.muscle_names[i] for i in full[:NAMED]]
             bound = f'at full activation: {_some(names, len(full))}'
         if not weak:
             return SolveStatus.OK, bound
-        reserve = outcome.reserve.tolist()
+        reserve = solution.reserve.tolist()
         weak.sort(key=lambda j: -abs(reserve[j]))
         parts = [f'{self.coordinate_names[j]} by {reserve[j]:.1f} N m' for j in weak[:NAMED]]
         text = f'muscles too weak, reserves help {_some(parts, len(weak))}'
@@ -364,12 +302,12 @@ class StaticOptimization:
 
 
 def _places(condition: NDArray[np.bool_]) -> list[int]:
-    """Give where a condition holds."""
+    """Return the indices at which a condition holds."""
     places: list[int] = condition.nonzero()[0].tolist()
     return places
 
 
 def _some(first: list[str], count: int) -> str:
-    """Give the first names in words and the number of the others: a report is to be read."""
+    """Return the first names, and the number of the others, for a report."""
     more = f' and {count - NAMED} more' if count > NAMED else ''
     return ', '.join(first) + more

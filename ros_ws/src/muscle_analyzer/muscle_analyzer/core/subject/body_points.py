@@ -107,7 +107,7 @@ def generic_points(model: MultibodyModel) -> dict[str, Array]:
 
 
 def _reference(model: MultibodyModel, joint_position: Array, row: Mapping[str, str]) -> Array:
-    """Return the mean position of the joints that a row names by the bodies they carry."""
+    """Return the mean position of the joints that a row names by their bodies."""
     indices = [model.body_index(body) for body in row['joints'].split()]
     mean: Array = joint_position[indices].mean(axis=0)
     return mean

@@ -25,16 +25,16 @@ from numpy.typing import NDArray
 from human_model.motion import FRAMES, POINTS, BodyMotion
 from human_model.skeleton import Skeleton
 from human_model.typing import Array
+from muscle_analyzer.core.boxed_tuple import boxed
 from muscle_analyzer.core.exceptions import TransferError
-from muscle_analyzer.core.held import hold
 from muscle_analyzer.core.subject.body_points import upright_coordinates
 from muscle_analyzer.core.subject.model import SubjectModel
 from muscle_analyzer.core.transfer.pose_misfit import Targets
-from muscle_analyzer.core.transfer.sample_transfer import TransferSetup, transfer_frames
+from muscle_analyzer.core.transfer.sample_transfer import TransferSetup, transfer_samples
 from muscle_analyzer.core.transfer.skeleton_state import SkeletonMotion
 
 # The skeletons have no neck: the head stays as it is on the thorax.
-HELD_COORDINATES = ('neck_flexion', 'neck_bending', 'neck_rotation')
+FIXED_COORDINATES = ('neck_flexion', 'neck_bending', 'neck_rotation')
 # The limbs' coordinates have the same names and meanings in both models: a weak pull to the
 # skeleton's values decides what the points leave open. So many radians weigh as much as one sigma
 # of a point.
@@ -142,7 +142,7 @@ class MotionTransfer:
         self.skeleton = skeleton
         model, points = subject.multibody, subject.points
         names = model.coordinate_names
-        fitted = np.array([name not in HELD_COORDINATES for name in names])
+        fitted = np.array([name not in FIXED_COORDINATES for name in names])
         clamped = {c.name: c.clamped for joint in model.source.joints for c in joint.coordinates}
         bounded = fitted & np.array([clamped[name] for name in names])
         which_points = _positions(points.names, POINTS)
@@ -174,7 +174,7 @@ class MotionTransfer:
             lower=np.where(bounded, model.lower, -np.inf),
             upper=np.where(bounded, model.upper, np.inf),
             fitted=fitted,
-            held=model.default,
+            fixed=model.default,
             pelvis_coordinates=np.array(
                 [model.coordinate_index(name) for name in PELVIS_COORDINATES], np.int64
             ),
@@ -185,7 +185,7 @@ class MotionTransfer:
             max_iterations=MAX_ITERATIONS,
         )
         # Turned over to the compiled functions once; a motion's columns while its names stay.
-        self._held = hold(self._setup)
+        self._boxed = boxed(self._setup)
         self._given: tuple[tuple[str, ...], ...] = ()
         self._columns = (which_points, which_points)
         self._start = np.full(len(names), np.nan)
@@ -222,8 +222,8 @@ class MotionTransfer:
                 _positions(points.frame_names, motion.frame_names),
             )
             self._given = given
-        done, out = transfer_frames(
-            self._held,
+        done, out = transfer_samples(
+            self._boxed,
             SkeletonMotion(
                 motion.position[samples],
                 motion.velocity[samples],

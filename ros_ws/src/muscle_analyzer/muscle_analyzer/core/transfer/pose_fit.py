@@ -21,9 +21,9 @@ from human_model.compiled_cache import kernel, njit
 from human_model.typing import Array
 from muscle_analyzer.core.multibody.kinematics import (
     BodyState,
+    allocate_kinematics,
+    compute_kinematics,
     forward_kinematics,
-    move_bodies,
-    room_for_bodies,
 )
 from muscle_analyzer.core.multibody.model import Tree
 from muscle_analyzer.core.transfer.normal_equations import (
@@ -191,9 +191,9 @@ def fit_pose(
     n_m = 3 * (targets.point_body.size + targets.frame_body.size)
     jacobian, spatial = np.empty((n_m, n_q)), np.empty((tree.parent.size, 6, n_q))
     residual, left = np.empty(n_m), np.empty(n_m)
-    room, state = room_for_bodies(tree)
-    other_room, there = room_for_bodies(tree)
-    move_bodies(tree, q, zero, zero, room, state)
+    room, state = allocate_kinematics(tree)
+    other_room, there = allocate_kinematics(tree)
+    compute_kinematics(tree, q, zero, zero, room, state)
     set_misfit(targets, state, residual)
     cost = _cost(targets, residual, q)
     relative_damping = _FIRST_DAMPING
@@ -224,7 +224,7 @@ def fit_pose(
                 elif step[k] == lower[k] - q[k]:
                     trial[k] = lower[k]
             size = np.max(np.abs(trial - q))
-            move_bodies(tree, trial, zero, zero, other_room, there)
+            compute_kinematics(tree, trial, zero, zero, other_room, there)
             set_misfit(targets, there, left)
             trial_cost = _cost(targets, left, trial)
             if trial_cost <= cost or size < tolerance:

@@ -14,7 +14,7 @@ import numpy as np
 from human_model.compiled_cache import njit
 from human_model.tree import TreeArrays
 from human_model.typing import Array, BoolArray, IntArray
-from muscle_analyzer.core.held import Held
+from muscle_analyzer.core.boxed_tuple import Boxed
 from muscle_analyzer.core.multibody.model import Tree
 from muscle_analyzer.core.transfer.pose_fit import Rates, fit_pose, map_rates
 from muscle_analyzer.core.transfer.pose_misfit import Targets
@@ -49,7 +49,7 @@ class TransferSetup(NamedTuple):
     lower, upper : (n_q,) arrays
         Bounds of the coordinates.
     fitted : (n_q,) bool array
-    held : (n_q,) array
+    fixed : (n_q,) array
         Values of those that are not fitted.
     pelvis_coordinates : (6,) int array
         Translations, then tilt, list and rotation.
@@ -73,7 +73,7 @@ class TransferSetup(NamedTuple):
     lower: Array
     upper: Array
     fitted: BoolArray
-    held: Array
+    fixed: Array
     pelvis_coordinates: IntArray
     pelvis: int
     pelvis_frame: int
@@ -82,7 +82,7 @@ class TransferSetup(NamedTuple):
     max_iterations: int
 
 
-class TransferredFrames(NamedTuple):
+class TransferredSamples(NamedTuple):
     """Frames on the musculoskeletal model; see `motion_transfer.TransferredMotion`.
 
     Attributes
@@ -103,9 +103,9 @@ class TransferredFrames(NamedTuple):
 
 
 @njit
-def _no_frames(n: int, n_q: int, n_p: int, n_f: int) -> TransferredFrames:
+def _allocate_samples(n: int, n_q: int, n_p: int, n_f: int) -> TransferredSamples:
     """Give room for n frames."""
-    return TransferredFrames(
+    return TransferredSamples(
         np.empty((n, n_q)),
         np.empty((n, n_q)),
         np.empty((n, n_q)),
@@ -199,7 +199,7 @@ def _rates(
 def _first(setup: TransferSetup) -> Array:
     """Return a start without a frame before: the target pelvis, the skeleton's limbs."""
     targets = setup.targets
-    start = setup.held.copy()
+    start = setup.fixed.copy()
     for k in range(start.size):
         if targets.reference_weight[k] > 0.0:
             start[k] = targets.reference[k]
@@ -232,14 +232,14 @@ def _set_remaining(targets: Targets, off: Array, distance: Array, angle: Array) 
 
 
 @njit(nogil=True)
-def transfer_frames(
-    held: Held[TransferSetup], motion: SkeletonMotion, start: Array, same_point: float
-) -> tuple[int, TransferredFrames]:
+def transfer_samples(
+    boxed: Boxed[TransferSetup], motion: SkeletonMotion, start: Array, same_point: float
+) -> tuple[int, TransferredSamples]:
     """Take frame after frame over, each from the one before.
 
     Parameters
     ----------
-    held : Held of TransferSetup
+    boxed : Boxed of TransferSetup
         Its targets are changed.
     motion : SkeletonMotion
     start : (n_q,) array
@@ -251,13 +251,13 @@ def transfer_frames(
     -------
     done : int
         Number of frames taken over: the next one's points are not those of the skeleton.
-    out : TransferredFrames
+    out : TransferredSamples
         Of these frames.
     """
-    setup = held.content
+    setup = boxed.content
     targets = setup.targets
     n_q, n_p, n_f = start.size, motion.point_column.size, motion.frame_column.size
-    out = _no_frames(len(motion.position), n_q, n_p, n_f)
+    out = _allocate_samples(len(motion.position), n_q, n_p, n_f)
     place, frames = np.empty((n_p, 3)), np.empty((n_f, 3, 3))
     free = np.empty(n_q, np.bool_)
     for k in range(len(motion.position)):

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Tuples held for compiled functions: what is in them, how long, and the cache."""
+"""Tuples boxed for compiled functions: what is in them, how long, and the cache."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ import pytest
 from numba import njit
 from numpy.typing import NDArray
 
-from muscle_analyzer.core import held as module
-from muscle_analyzer.core.held import Held, hold
+from muscle_analyzer.core import boxed_tuple as module
+from muscle_analyzer.core.boxed_tuple import Boxed, boxed
 
 
 class Inner(NamedTuple):
@@ -27,7 +27,7 @@ class Inner(NamedTuple):
 
 
 class Outer(NamedTuple):
-    """What is held."""
+    """What is boxed_tuple."""
 
     inner: Inner
     number: NDArray[np.int64]
@@ -37,12 +37,12 @@ class Outer(NamedTuple):
 @pytest.fixture(autouse=True)
 def _uncached(monkeypatch: pytest.MonkeyPatch) -> None:
     """Keep the tuples of this file out of the cache: no other process could read its index."""
-    monkeypatch.setattr(module, '_hold', njit(module._hold.py_func))
+    monkeypatch.setattr(module, '_box', njit(module._box.py_func))
 
 
 @njit
-def _weighted(held: Held[Outer]) -> float:
-    content = held.content
+def _weighted(boxed_content: Boxed[Outer]) -> float:
+    content = boxed_content.content
     total = 0.0
     for i in range(content.number.size):
         total += content.inner.value[i] * content.number[i]
@@ -50,27 +50,27 @@ def _weighted(held: Held[Outer]) -> float:
 
 
 def test_compiled_functions_see_the_content() -> None:
-    held = hold(Outer(Inner(np.array([0.5, 0.25])), np.array([2, 4]), 3.0))
-    assert _weighted(held) == 6.0
+    boxed_content = boxed(Outer(Inner(np.array([0.5, 0.25])), np.array([2, 4]), 3.0))
+    assert _weighted(boxed_content) == 6.0
 
 
 def test_arrays_are_shared_and_kept_alive() -> None:
     value = np.array([1.0, 2.0])
-    held = hold(Outer(Inner(value), np.array([1, 1]), 1.0))
+    boxed_content = boxed(Outer(Inner(value), np.array([1, 1]), 1.0))
     value[0] = 5.0
-    assert _weighted(held) == 7.0
+    assert _weighted(boxed_content) == 7.0
     del value
     gc.collect()
     np.full(2, np.nan)
-    assert _weighted(held) == 7.0
+    assert _weighted(boxed_content) == 7.0
 
 
 def test_arrays_are_given_free() -> None:
     value = np.array([1.0, 2.0])
     before = sys.getrefcount(value)
-    held = hold(Outer(Inner(value), np.array([1, 1]), 1.0))
+    boxed_content = boxed(Outer(Inner(value), np.array([1, 1]), 1.0))
     assert sys.getrefcount(value) > before
-    del held
+    del boxed_content
     gc.collect()
     assert sys.getrefcount(value) == before
 
@@ -78,9 +78,9 @@ def test_arrays_are_given_free() -> None:
 def test_a_second_process_does_not_compile(tmp_path: Path) -> None:
     script = (
         'import numpy as np\n'
-        'from muscle_analyzer.core import held\n'
-        'held.hold((np.zeros(2), 1.0))\n'
-        'print(sum(held._hold.stats.cache_misses.values()))'
+        'from muscle_analyzer.core import boxed_tuple\n'
+        'boxed_tuple.boxed((np.zeros(2), 1.0))\n'
+        'print(sum(boxed_tuple._box.stats.cache_misses.values()))'
     )
     misses = [
         subprocess.run(
