@@ -16,6 +16,7 @@ from muscle_analyzer.core.loads.disc_frame import (
     disc_load,
     disc_option,
     disc_rotation,
+    disc_setting,
     sacral_angle,
 )
 
@@ -52,12 +53,14 @@ def test_bruno_frame_by_hand():
 )
 def test_published_sacral_angles(trunk, knee, expected):
     """Facts 4.11: beta of -1.1, 48 and 6.4 degrees."""
-    assert sacral_angle(trunk, knee) == pytest.approx(expected, abs=0.1)
+    regression = disc_setting(DiscOption.CHAFFIN).regression
+    assert sacral_angle(regression, trunk, knee) == pytest.approx(expected, abs=0.1)
 
 
 def test_chaffin_frame_is_level_sideways_and_leans_by_the_sacral_angle():
     rotation = disc_rotation(DiscOption.CHAFFIN, leant(20.0), leant(45.0), math.pi / 2.0)
-    alpha = math.radians(sacral_angle(45.0, 90.0))
+    regression = disc_setting(DiscOption.CHAFFIN).regression
+    alpha = math.radians(sacral_angle(regression, 45.0, 90.0))
     expected = np.array([math.sin(alpha), math.cos(alpha), 0.0])
     np.testing.assert_allclose(rotation[:, 2], expected, atol=1e-12)
     np.testing.assert_allclose(rotation[:, 1], [0.0, 0.0, -1.0], atol=1e-12)

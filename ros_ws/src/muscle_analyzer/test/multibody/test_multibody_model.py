@@ -77,7 +77,7 @@ def test_coupler_on_a_coupled_coordinate_is_named(write_model):
 
 
 def test_unknown_names_are_refused(pendulum):
-    for look_up in (pendulum.body_index, pendulum.joint_index, pendulum.coordinate_index):
+    for look_up in (pendulum.body_index, pendulum.coordinate_index):
         with pytest.raises(UnknownNameError, match='nobody'):
             look_up('nobody')
 

@@ -145,25 +145,22 @@ def disc_setting(option: DiscOption) -> DiscSetting:
 
 
 @njit
-def _sacral_angle(regression: Array, t: float, k: float) -> float:
-    constant, b0, bt, bk, btk, btt, bkk = regression
-    beta = b0 + bt * t + bk * k + btk * t * k + btt * t * t + bkk * k * k
-    return float(constant + beta)
-
-
-def sacral_angle(trunk_flexion: float, knee_angle: float) -> float:
+def sacral_angle(regression: Array, trunk_flexion: float, knee_angle: float) -> float:
     """Return the sacral end plate's angle to the horizontal by Chaffin, Andersson and Martin, deg.
 
     Parameters
     ----------
+    regression : ndarray, shape (7,)
+        See `DiscSetting`.
     trunk_flexion : float
         T, of the trunk from the vertical, forwards positive, deg.
     knee_angle : float
         K, included knee angle, 180 with a straight leg, deg.
     """
-    regression = disc_setting(DiscOption.CHAFFIN).regression
-    angle: float = _sacral_angle(regression, trunk_flexion, knee_angle)
-    return angle
+    t, k = trunk_flexion, knee_angle
+    constant, b0, bt, bk, btk, btt, bkk = regression
+    beta = b0 + bt * t + bk * k + btk * t * k + btt * t * t + bkk * k * k
+    return float(constant + beta)
 
 
 @njit
@@ -206,7 +203,7 @@ def turn_disc(
     rotation[0, 2], rotation[1, 2], rotation[2, 2] = 0.0, 1.0, 0.0
     lean = np.degrees(np.arctan2(trunk[2, 1] * x - trunk[0, 1] * z, trunk[1, 1]))
     knee = 180.0 - np.degrees(knee_flexion)
-    _lean_forward(rotation, np.radians(_sacral_angle(setting.regression, lean, knee)))
+    _lean_forward(rotation, np.radians(sacral_angle(setting.regression, lean, knee)))
 
 
 def disc_rotation(option: DiscOption, vertebra: Array, trunk: Array, knee_flexion: float) -> Array:

@@ -109,14 +109,6 @@ def _inertial_wrenches(tree: Tree, state: BodyState, out: Array) -> None:
         out[b, 3], out[b, 4], out[b, 5] = fx, fy, fz
 
 
-@njit
-def subtree_sum(tree: Tree, wrenches: Array) -> Array:
-    """Return for every body the sum (n_b, 6) of the wrenches of it and all that it carries."""
-    total = wrenches.copy()
-    accumulate_subtrees(tree.parent, total)
-    return total
-
-
 @kernel
 def accumulate_subtrees(parent: NDArray[np.int64], wrenches: Array) -> None:
     """Add to the wrenches (n_b, 6) on each body those on all that it carries, in place."""

@@ -15,8 +15,6 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-
 from human_model.compiled_cache import kernel, njit
 from human_model.typing import Array
 from muscle_analyzer.core.multibody.inverse_dynamics import accumulate_subtrees, wrench_at
@@ -67,27 +65,6 @@ def compute_joint_reactions(tree: Tree, joint_wrench: Array, wrench: Array) -> N
     for b in range(wrench.shape[0]):
         for i in range(6):
             wrench[b, i] = joint_wrench[b, i] - wrench[b, i]
-
-
-@njit
-def express(wrench: Array, point: Array, rotation: Array) -> Array:
-    """Return a wrench about the ground's origin as (moment about `point`, force) in another frame.
-
-    Parameters
-    ----------
-    wrench : (6,) array
-    point : (3,) array
-        m, ground axes.
-    rotation : (3, 3) array
-        Ground <- frame.
-    """
-    moved = wrench_at(wrench, point)
-    out = np.zeros(6)
-    for i in range(3):
-        for j in range(3):
-            out[i] += rotation[j, i] * moved[j]
-            out[3 + i] += rotation[j, i] * moved[3 + j]
-    return out
 
 
 @njit

@@ -119,10 +119,6 @@ class MultibodyModel:
         """Return a body's index, or raise UnknownNameError."""
         return _index(self.body_names, name, 'body')
 
-    def joint_index(self, name: str) -> int:
-        """Return the index of the body that a joint carries, or raise UnknownNameError."""
-        return _index(self.joint_names, name, 'joint')
-
     def coordinate_index(self, name: str) -> int:
         """Return an independent coordinate's index, or raise UnknownNameError."""
         return _index(self.coordinate_names, name, 'independent coordinate')

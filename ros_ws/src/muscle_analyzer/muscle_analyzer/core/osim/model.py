@@ -239,13 +239,6 @@ class OsimModel:
         """Return the joint of that name, or raise UnknownNameError."""
         return _by_name(self.joints, name, 'joint', self.source)
 
-    def joint_of_child(self, body: str) -> Joint:
-        """Return the joint that carries a body, or raise UnknownNameError."""
-        for joint in self.joints:
-            if joint.child.body == body:
-                return joint
-        raise UnknownNameError(f'{self.source}: no joint has the child body {body!r}')
-
     def wrap_object(self, name: str) -> WrapObject:
         """Return the wrap object of that name, or raise UnknownNameError."""
         return _by_name(self.wrap_objects, name, 'wrap object', self.source)
