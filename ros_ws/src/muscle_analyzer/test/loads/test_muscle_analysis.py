@@ -7,6 +7,7 @@ import pytest
 
 from muscle_analyzer.core.exceptions import InputArrayError
 from muscle_analyzer.core.loads.analysis import JoinedParts
+from muscle_analyzer.core.muscles.activation_dynamics import ActivationDynamics
 
 
 def test_parts_of_any_length_give_the_whole(box_lift):
@@ -33,3 +34,16 @@ def test_a_lift_that_lacks_samples_is_refused(box_lift):
     parts.add(box_lift.analyzer.analyze(box_lift.body[:2], 'lift', 'measured'))
     with pytest.raises(InputArrayError, match='2 of 3'):
         parts.whole()
+
+
+def test_excitations_of_a_lift_produce_its_activations(box_lift):
+    body = box_lift.body[:6]
+    whole = box_lift.analyzer.analyze(body, 'lift', 'measured')
+    dynamics = ActivationDynamics(deactivation_time=0.06)
+    excitation = whole.excitation(dynamics)
+    rate = dynamics.rate(whole.activation, excitation)
+    slope = np.gradient(whole.activation, whole.time, axis=0)
+    np.testing.assert_allclose(rate, slope, atol=1e-9)
+    assert not np.array_equal(whole.excitation(), excitation)
+    with pytest.raises(InputArrayError, match='at least 3 samples'):
+        box_lift.analyzer.analyze(body[:2]).excitation()

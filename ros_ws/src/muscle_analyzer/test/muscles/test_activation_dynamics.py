@@ -7,7 +7,10 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from muscle_analyzer.core.exceptions import InputArrayError
-from muscle_analyzer.core.muscles.activation_dynamics import ActivationDynamics, impossible_share
+from muscle_analyzer.core.muscles.activation_dynamics import (
+    ActivationDynamics,
+    impossible_fraction,
+)
 
 
 def test_rates_by_hand():
@@ -45,8 +48,8 @@ def test_jump_of_activation_cannot_be_excited():
     activation[50:, 0] = 1.0
     found = ActivationDynamics().excitation(np.arange(101) * 0.001, activation)
     assert found[50, 0] > 1.0
-    assert impossible_share(found)[0] == pytest.approx(2.0 / 101.0)
-    assert impossible_share(found)[1] == 0.0
+    assert impossible_fraction(found)[0] == pytest.approx(2.0 / 101.0)
+    assert impossible_fraction(found)[1] == 0.0
 
 
 def test_bad_courses_are_named():

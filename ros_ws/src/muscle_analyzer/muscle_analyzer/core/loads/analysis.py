@@ -15,6 +15,7 @@ from human_model.report import SolveReport, SolveStatus
 from human_model.typing import Array
 from muscle_analyzer.core.exceptions import InputArrayError
 from muscle_analyzer.core.loads.sample_status import worst_report
+from muscle_analyzer.core.muscles.activation_dynamics import ActivationDynamics
 
 
 class Origin(NamedTuple):
@@ -175,6 +176,25 @@ class MuscleAnalysis:
     def good_spine_samples(self) -> int:
         """Number of samples whose L5-S1 load is good data."""
         return int(np.count_nonzero(self.spine_status == SolveStatus.OK))
+
+    def excitation(self, dynamics: ActivationDynamics | None = None) -> Array:
+        """Return the excitations (n, n_m) that produce the activations (equation 4.13).
+
+        Static optimisation solves each sample alone.  An excitation outside 0 to 1 means that the
+        activation changes faster than a muscle can (`activation_dynamics.impossible_fraction`).
+        NaN beside samples whose activations are NaN.
+
+        Parameters
+        ----------
+        dynamics : ActivationDynamics, optional
+            Time constants; those of young adults if omitted.
+
+        Raises
+        ------
+        InputArrayError
+            If there are fewer than three samples.
+        """
+        return (dynamics or ActivationDynamics()).excitation(self.time, self.activation)
 
     @property
     def peak_compression(self) -> float:

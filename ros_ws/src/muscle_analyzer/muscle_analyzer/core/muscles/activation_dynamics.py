@@ -1,11 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Activation dynamics: excitations that would produce the activations of a lift (equation 4.13).
+"""Activation dynamics: excitations that produce the activations of a lift (equation 4.13).
 
-Static optimisation takes each instant by itself.  First-order activation dynamics,
-``da/dt = (u - a) / tau(a, u)``, say afterwards which excitation u each activation course needs,
-and where it asks for more than a muscle can do: u outside 0 to 1 means that the activation rises
-or falls faster than calcium and cross-bridges allow.
+Static optimisation solves each sample alone.  First-order activation dynamics,
+``da/dt = (u - a) / tau(a, u)``, give the excitation u of each activation course.  An excitation
+outside 0 to 1 means that the activation rises or falls faster than a muscle can.
 
 The time constant is that of Thelen 2003 (J Biomech Eng 125:70) as in OpenSim's
 ``Thelen2003Muscle``: ``tau_act (0.5 + 1.5 a)`` while the activation rises, ``tau_deact / (0.5 +
@@ -22,7 +21,7 @@ from numpy.typing import ArrayLike
 from human_model.typing import Array
 from muscle_analyzer.core.exceptions import InputArrayError
 
-#: An excitation less than this outside 0 to 1 is so by rounding.
+#: Tolerance for rounding of the bounds 0 and 1.
 ROUNDING = 1e-9
 
 
@@ -51,7 +50,7 @@ class ActivationDynamics:
                 raise InputArrayError(f'{name} {getattr(self, name)} s must be positive')
 
     def rate(self, activation: ArrayLike, excitation: ArrayLike) -> Array:
-        """Give da/dt (equation 4.13) [1/s].
+        """Return da/dt (equation 4.13) [1/s].
 
         Parameters
         ----------
@@ -65,7 +64,7 @@ class ActivationDynamics:
         return np.asarray((u - a) / np.where(u > a, rising, falling))
 
     def excitation(self, time: Array, activation: Array) -> Array:
-        """Give the excitation that makes an activation course; equation 4.13 solved for u.
+        """Return the excitation of an activation course; equation 4.13 solved for u.
 
         Parameters
         ----------
@@ -77,7 +76,7 @@ class ActivationDynamics:
         Returns
         -------
         (n, n_m)
-            Not clipped: values outside 0 to 1 are what no excitation can make.
+            Not clipped: no excitation produces values outside 0 to 1.
 
         Raises
         ------
@@ -99,7 +98,7 @@ class ActivationDynamics:
         return np.asarray(activation + tau * slope)
 
 
-def impossible_share(excitation: Array) -> Array:
-    """Give the share of the samples in which no excitation makes the activation, per muscle."""
+def impossible_fraction(excitation: Array) -> Array:
+    """Return, per muscle, the fraction of samples whose activation no excitation produces."""
     beyond = (excitation < -ROUNDING) | (excitation > 1.0 + ROUNDING)
     return np.asarray(np.mean(beyond, axis=0))
