@@ -89,8 +89,7 @@ def squats() -> BenchMotion:
 def asymmetric() -> BenchMotion:
     """Give the asymmetric lift of 7 kg as the analysis takes it over."""
     recorded = recorded_lifts(ASYMMETRIC)
-    analyzer = MuscleAnalyzer()
-    analyzer.configure(recorded.subject)
+    analyzer = MuscleAnalyzer(recorded.subject)
     body = recorded.lift(1).lift.motion
     transfer = analyzer.new_transfer(body.skeleton)
     motion = motion_on_model(transfer, body, recorded.start)

@@ -147,8 +147,7 @@ def curves(bag: str) -> tuple[list[Curve], list[Curve]]:
         assert person is not None
         return same_task(build_task(person, lift, box), size, styles)
 
-    analyzer = MuscleAnalyzer()
-    analyzer.configure(subject)
+    analyzer = MuscleAnalyzer(subject)
     index = _index(planner, predicted, lift, box)
     found, again = [_curve(RECORDED, predicted, index, analyzer)], list[Curve]()
     own = technique_of(index)

@@ -66,8 +66,7 @@ def squats(squats_files, bags, tracked, tmp_path_factory):
         )
     )
     found = tracked(folder / 'squats')
-    analyzer = MuscleAnalyzer()
-    analyzer.configure(found.calibrated)
+    analyzer = MuscleAnalyzer(found.calibrated)
     analyses = [
         analyzer.analyze(lift.lift.motion, lift.lift.lift_id, 'measured', lift.status)
         for lift in found.lifts

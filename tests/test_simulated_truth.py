@@ -188,8 +188,8 @@ def test_transfer_to_the_musculoskeletal_model(lift, distribution):
 
     Those of the model itself are distributed otherwise (19 N m): no test of what is simulated.
     """
-    analyzer = MuscleAnalyzer(MuscleAnalyzerOptions(mass_distribution=distribution))
-    analyzer.configure(lift.found.calibrated)
+    options = MuscleAnalyzerOptions(mass_distribution=distribution)
+    analyzer = MuscleAnalyzer(lift.found.calibrated, options)
     analysis = analyzer.analyze(
         lift.measured.lift.motion, 'lift_001', 'measured', lift.measured.status
     )

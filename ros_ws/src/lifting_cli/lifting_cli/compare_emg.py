@@ -64,8 +64,7 @@ def compare_recorded_emg(options: CompareEmgOptions) -> tuple[EmgMatch, ...]:
     found = recorded.lift(options.lift)
     try:
         envelopes = normalised_envelopes(emg, options.mvc)
-        analyzer = MuscleAnalyzer()
-        analyzer.configure(recorded.subject)
+        analyzer = MuscleAnalyzer(recorded.subject)
         lift = found.lift
         analysis = analyzer.analyze(lift.motion, lift.lift_id, 'measured', found.status)
         analysis = replace(analysis, time=analysis.time - recorded.start)

@@ -96,8 +96,7 @@ def compare_opensim(options: CompareOptions, say: Callable[[str], None]) -> Comp
             force_length_velocity=options.physiology,
             static_optimization=StaticOptimizationOptions(criterion=options.criterion),
         )
-        analyzer = MuscleAnalyzer(settings)
-        analyzer.configure(recorded.subject)
+        analyzer = MuscleAnalyzer(recorded.subject, settings)
         body = found.lift.motion
         motion = motion_on_model(analyzer.new_transfer(body.skeleton), body, recorded.start)
         splined = motion.with_splined_rates()

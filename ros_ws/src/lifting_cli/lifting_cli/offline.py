@@ -81,7 +81,7 @@ class OfflineGraph:
         self._task: Any = None
         self._tracker: MotionTracker | None = None
         self._predictor = LiftPredictor()
-        self._analyzer = MuscleAnalyzer()
+        self._analyzer: MuscleAnalyzer | None = None
         self._disc = muscle_messages.disc_frame_id(station)
         values = defaults('injury_monitor')
         self._monitor = InjuryMonitor(
@@ -134,7 +134,7 @@ class OfflineGraph:
             *inputs.task_from_msg(self._task),
         )
         self._predictor.configure(self._tracker.subject)
-        self._analyzer.configure(self._tracker.subject)
+        self._analyzer = MuscleAnalyzer(self._tracker.subject)
 
     def _take(self, outputs: list[tracked.Output]) -> None:
         for output in outputs:
@@ -183,6 +183,7 @@ class OfflineGraph:
     ) -> tuple[Any, Any, Any]:
         """Analyse a block; emit and return spine load, joint torques and muscle analysis."""
         status = quality_from_msg(message).status
+        assert self._analyzer is not None  # A motion exists only after person and task.
         analysis = self._analyzer.analyze(motion, lift_id, source, status)
         spine = muscle_messages.spine_load_to_msg(analysis, mass, self._disc)
         torques = muscle_messages.torques_to_msg(self._analyzer.joint_torques(analysis, motion))

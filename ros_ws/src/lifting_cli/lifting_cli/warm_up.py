@@ -32,8 +32,7 @@ def warm_analyzer() -> None:
     from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
 
     subject = named_subject(subject_names()[0])
-    analyzer = MuscleAnalyzer()
-    analyzer.configure(subject)
+    analyzer = MuscleAnalyzer(subject)
     for kind, source in ((Skeleton3D, 'measured'), (Skeleton2D, 'predicted')):
         skeleton = kind.of(subject)
         q = skeleton.standing()

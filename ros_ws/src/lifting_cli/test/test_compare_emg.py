@@ -52,8 +52,7 @@ def bag_with_emg(tmp_path_factory):
     """Return a recording with two EMG channels: noise with the course of two activations."""
     recorded = recorded_lifts(BAG)
     lift = recorded.lift(1)
-    analyzer = MuscleAnalyzer()
-    analyzer.configure(recorded.subject)
+    analyzer = MuscleAnalyzer(recorded.subject)
     motion = lift.lift.motion
     analysis = analyzer.analyze(motion, lift.lift.lift_id, 'measured', lift.status)
     with BagReader(BAG) as reader:

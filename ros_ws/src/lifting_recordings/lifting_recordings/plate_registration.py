@@ -183,8 +183,7 @@ def _missing_by_model(
         centre_of_pressure=places,
         free_moment=moment - np.cross(places, force),
     )
-    analyzer = MuscleAnalyzer()
-    analyzer.configure(subject)
+    analyzer = MuscleAnalyzer(subject)
     analysis = analyzer.analyze(motion, source='measured')
     missing: Array = analysis.net_moment_top_down - analysis.net_moment_bottom_up
     if not np.isfinite(missing).all():

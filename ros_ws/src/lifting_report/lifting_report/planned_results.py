@@ -118,8 +118,7 @@ def _write_results(planned: PlannedLift, entry: TaskFile, path: Path) -> SpinePe
     if prediction.lift is None:
         raise ReportError('lift', None, f'{entry.task.name} has no predicted lift')
     motion = prediction.lift.motion
-    analyzer = MuscleAnalyzer()
-    analyzer.configure(subject)
+    analyzer = MuscleAnalyzer(subject)
     analysis = analyzer.analyze(motion, prediction.lift_id, 'predicted')
     torques = analyzer.joint_torques(analysis, motion)
     lift = predictor_messages.prediction_to_msg(prediction, None, subject)

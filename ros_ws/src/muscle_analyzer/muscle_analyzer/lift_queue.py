@@ -64,7 +64,7 @@ class LiftQueue:
         failed: Callable[[WaitingLift, Exception], None],
         errors: tuple[type[Exception], ...],
     ) -> None:
-        self._analyzer = analyzer
+        self.analyzer = analyzer
         self._done = done
         self._failed = failed
         self._errors = errors
@@ -104,7 +104,7 @@ class LiftQueue:
         for k in range(0, len(lift.motion), SAMPLES):
             some = slice(k, k + SAMPLES)
             parts.add(
-                self._analyzer.analyze(
+                self.analyzer.analyze(
                     lift.motion[some],
                     lift.lift_id,
                     lift.source,

@@ -27,6 +27,7 @@ from rclpy.clock import Clock, ClockType
 from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 
 from human_model.exceptions import HumanModelError
+from human_model.named_subjects import named_subject, subject_names
 from human_model.subject import Subject
 from lifting_node import qos
 from lifting_node.cdr import CdrError
@@ -69,7 +70,9 @@ class MuscleAnalyzerNode(PipelineNode):
         """Read the model, load compiled functions; create publishers and subscriptions."""
         values = dict(self.values)
         model = values.pop('model')
+        # Of any person: the model is read and the compiled functions are loaded before the first.
         self.analyzer = MuscleAnalyzer(
+            named_subject(subject_names()[0]),
             MuscleAnalyzerOptions(
                 model_path=Path(model) if model else None,
                 strength=StrengthScaling(values.pop('strength')),
@@ -79,9 +82,8 @@ class MuscleAnalyzerNode(PipelineNode):
                 ),
                 mass_distribution=MassDistribution(values.pop('mass_distribution')),
                 **values,
-            )
+            ),
         )
-        self.analyzer.prepare()
         self._disc = conversions.disc_frame_id(self.get_namespace())
         self._subject: Subject | None = None
         self._box_mass = float('nan')
@@ -130,7 +132,7 @@ class MuscleAnalyzerNode(PipelineNode):
         # Lifts of the person before are analysed with that person's model.
         self._queue.finish()
         self._subject = None
-        self.analyzer.configure(subject)
+        self.analyzer = self._queue.analyzer = self.analyzer.for_subject(subject)
         self._subject = subject
         self._analyze_waiting()
         self._work_off_early()

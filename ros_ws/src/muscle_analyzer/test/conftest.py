@@ -210,9 +210,8 @@ class BoxLift:
 def box_lift():
     """Give 0.3 s of rising with a box; the left foot leaves the ground at the end."""
     subject = Subject('p01', 'male', 63.5, 1.69, 25)
-    analyzer = MuscleAnalyzer()
     try:
-        analyzer.configure(subject)
+        analyzer = MuscleAnalyzer(subject)
     except ModelFileError as error:
         pytest.skip(str(error))
     skeleton = Skeleton3D.of(subject)

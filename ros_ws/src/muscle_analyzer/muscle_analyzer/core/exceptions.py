@@ -49,10 +49,6 @@ class ModelFileError(MuscleAnalyzerError):
     """The musculoskeletal model's file is not installed."""
 
 
-class NotConfiguredError(MuscleAnalyzerError):
-    """A result was asked for before a subject was given."""
-
-
 class StorageError(MuscleAnalyzerError):
     """An OpenSim table over time cannot be read or written; names file, line and column.
 

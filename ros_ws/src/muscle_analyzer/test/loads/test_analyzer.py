@@ -16,7 +16,6 @@ from human_model.skeleton_3d import Skeleton3D
 from human_model.subject import Subject
 from muscle_analyzer.core.exceptions import (
     InputArrayError,
-    NotConfiguredError,
     OptionError,
     TransferError,
 )
@@ -63,9 +62,7 @@ def held_posture(skeleton, pose, box_weight=100.0, n=1, **changes):
 
 @pytest.fixture(scope='module')
 def analyzer():
-    made = MuscleAnalyzer()
-    made.configure(SUBJECT)
-    return made
+    return MuscleAnalyzer(SUBJECT)
 
 
 @pytest.fixture(scope='module')
@@ -214,8 +211,7 @@ def test_spine_load_does_not_hang_on_how_weak_hips_are_helped(analyzer, skeleton
     motion = replace(motion, ground_force=force)
     weak = analyzer.analyze(motion, source='measured')
     monkeypatch.setattr(load_solver, 'read_reserves', generous)
-    other = MuscleAnalyzer()
-    other.configure(SUBJECT)
+    other = analyzer.for_subject(SUBJECT)
     helped = other.analyze(motion, source='measured')
     assert np.abs(helped.reserve - weak.reserve).max() > 5.0
     assert helped.l5_s1_force[0] == pytest.approx(weak.l5_s1_force[0], rel=0.01, abs=10.0)
@@ -234,11 +230,11 @@ def test_tracker_status_is_never_forgotten(analyzer, skeleton):
         analyzer.analyze(motion, 'l', 'measured', [0, 0])
 
 
-def test_preparing_needs_no_subject_and_gives_none(skeleton):
-    made = MuscleAnalyzer()
-    made.prepare()
-    with pytest.raises(NotConfiguredError):
-        made.analyze(held_posture(skeleton, POSE_3D))
+def test_analyzer_of_another_subject_has_the_same_options_and_model(analyzer):
+    heavier = analyzer.for_subject(replace(SUBJECT, mass=80.0))
+    assert heavier.options is analyzer.options
+    assert heavier.generic_model is analyzer.generic_model
+    assert (heavier.subject.mass, analyzer.subject.mass) == (80.0, SUBJECT.mass)
 
 
 def test_muscles_too_weak_name_coordinate_and_muscles(analyzer, skeleton):
@@ -286,8 +282,7 @@ def test_worst_sample_is_reported(analyzer, skeleton):
 def test_disc_frame_turns_the_same_force(analyzer, skeleton):
     motion = held_posture(skeleton, POSE_3D)
     turned = analyzer.analyze(motion, source='measured')
-    other = MuscleAnalyzer(MuscleAnalyzerOptions(disc_frame='vertebral'))
-    other.configure(SUBJECT)
+    other = MuscleAnalyzer(SUBJECT, MuscleAnalyzerOptions(disc_frame='vertebral'))
     plain = other.analyze(motion, source='measured')
     size = np.linalg.norm(plain.l5_s1_force[0])
     assert np.linalg.norm(turned.l5_s1_force[0]) == pytest.approx(size)
@@ -300,8 +295,7 @@ def test_disc_frame_turns_the_same_force(analyzer, skeleton):
 def test_force_length_velocity_weakens_muscles(analyzer, skeleton):
     motion = held_posture(skeleton, POSE_3D)
     strong = analyzer.analyze(motion, source='measured')
-    hill = MuscleAnalyzer(MuscleAnalyzerOptions(force_length_velocity=True))
-    hill.configure(SUBJECT)
+    hill = MuscleAnalyzer(SUBJECT, MuscleAnalyzerOptions(force_length_velocity=True))
     weak = hill.analyze(motion, source='measured')
     assert weak.torque == pytest.approx(strong.torque, abs=1e-9)
     assert weak.report.primal_residual < 1e-7
@@ -313,8 +307,8 @@ def test_force_length_velocity_weakens_muscles(analyzer, skeleton):
 def test_weaker_people_use_more_of_their_muscles(analyzer, skeleton):
     motion = held_posture(skeleton, POSE_3D)
     usual = analyzer.analyze(motion, source='measured')
-    weak = MuscleAnalyzer(MuscleAnalyzerOptions(strength=StrengthScaling.POPULATION))
-    weak.configure(replace(SUBJECT, strength_z=-1.0))
+    options = MuscleAnalyzerOptions(strength=StrengthScaling.POPULATION)
+    weak = MuscleAnalyzer(replace(SUBJECT, strength_z=-1.0), options)
     more = weak.analyze(motion, source='measured')
     trunk = [k for k, name in enumerate(usual.muscle_names) if name.startswith(('LTp', 'MF_'))]
     assert more.activation[0, trunk].sum() > 1.1 * usual.activation[0, trunk].sum()
@@ -325,12 +319,10 @@ def test_weaker_people_use_more_of_their_muscles(analyzer, skeleton):
 
 def test_wrong_use_is_refused(analyzer, skeleton):
     motion = held_posture(skeleton, POSE_3D)
-    with pytest.raises(NotConfiguredError, match='configure'):
-        MuscleAnalyzer().analyze(motion)
     with pytest.raises(InputArrayError, match="source 'guessed'"):
         analyzer.analyze(motion, source='guessed')
     with pytest.raises(OptionError, match="disc frame 'round'"):
-        MuscleAnalyzer(MuscleAnalyzerOptions(disc_frame='round'))
+        MuscleAnalyzer(SUBJECT, MuscleAnalyzerOptions(disc_frame='round'))
     taller = Skeleton3D.of(Subject('p02', 'male', 90.0, 1.9, 25))
     with pytest.raises(TransferError, match='away from the skeleton of the subject'):
         analyzer.analyze(held_posture(taller, POSE_3D))

@@ -50,8 +50,8 @@ def standing():
 
     def analyse(option, tilt=0.0, rotation=0.0):
         if option not in analyzers:
-            analyzers[option] = MuscleAnalyzer(MuscleAnalyzerOptions(disc_frame=option))
-            analyzers[option].configure(PERSON)
+            options = MuscleAnalyzerOptions(disc_frame=option)
+            analyzers[option] = MuscleAnalyzer(PERSON, options)
         q = skeleton.standing()
         # Positive leans back.
         q[skeleton.index('pelvis_tilt')] = -math.radians(tilt)
@@ -152,8 +152,7 @@ def test_pose_takes_the_load_into_the_laboratory(standing, option):
 
 def test_a_sample_without_motion_has_no_pose():
     skeleton = Skeleton3D.of(PERSON)
-    analyzer = MuscleAnalyzer()
-    analyzer.configure(PERSON)
+    analyzer = MuscleAnalyzer(PERSON)
     motion = upright(skeleton.standing(), skeleton)
     lost = analyzer.analyze(motion, tracker_status=[101])
     assert np.isnan(lost.disc_position).all()

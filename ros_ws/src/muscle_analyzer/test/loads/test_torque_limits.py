@@ -13,7 +13,7 @@ from human_model.skeleton_2d import Skeleton2D
 from human_model.skeleton_3d import Skeleton3D
 from human_model.strength import JointStrength
 from human_model.subject import Subject
-from muscle_analyzer.core.exceptions import InputArrayError, NotConfiguredError, OptionError
+from muscle_analyzer.core.exceptions import InputArrayError, OptionError
 from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
 from muscle_analyzer.core.loads.torque_limits import read_torque_rows
 
@@ -26,9 +26,7 @@ SETS = 'anderson2007_nonneg'
 
 @pytest.fixture(scope='module')
 def analyzer():
-    made = MuscleAnalyzer()
-    made.configure(SUBJECT)
-    return made
+    return MuscleAnalyzer(SUBJECT)
 
 
 def crouch(skeleton, box_weight=100.0, **rates):
@@ -156,8 +154,6 @@ def test_wrong_use_is_refused(analyzer):
     analysis = analyzer.analyze(motion)
     with pytest.raises(InputArrayError, match='is not the'):
         analyzer.joint_torques(analysis, replace(motion, time=motion.time + 1.0))
-    with pytest.raises(NotConfiguredError):
-        MuscleAnalyzer().joint_torques(analysis, motion)
 
 
 def test_table_of_the_package_has_strength_and_torque_for_every_joint(analyzer):

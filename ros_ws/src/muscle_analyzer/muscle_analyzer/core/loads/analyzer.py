@@ -4,7 +4,7 @@
 
 One sample goes through transfer to the musculoskeletal model, inverse dynamics, static
 optimisation (equation 4.10) and joint reaction (equation 4.11).  Live blocks of one sample and
-whole lifts take the same way.
+whole lifts take the same path.
 """
 
 from __future__ import annotations
@@ -15,27 +15,23 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from human_model.motion import BodyMotion
-from human_model.named_subjects import named_subject, subject_names
 from human_model.skeleton import Skeleton
 from human_model.skeleton_2d import Skeleton2D
 from human_model.skeleton_3d import Skeleton3D
 from human_model.subject import Subject
-from muscle_analyzer.core.exceptions import InputArrayError, NotConfiguredError
+from muscle_analyzer.core.exceptions import InputArrayError
 from muscle_analyzer.core.loads.analysis import MuscleAnalysis, Origin
 from muscle_analyzer.core.loads.block_solver import BlockSolver
 from muscle_analyzer.core.loads.disc_frame import disc_option
+from muscle_analyzer.core.loads.muscle_model import read_generic_model, scaled_model
 from muscle_analyzer.core.loads.options import MuscleAnalyzerOptions
 from muscle_analyzer.core.loads.torque_limits import JointTorques, TorqueLimits
 from muscle_analyzer.core.osim.model import OsimModel
-from muscle_analyzer.core.osim.model_cache import load_model
-from muscle_analyzer.core.subject.model import lifting_model_path, subject_model
-from muscle_analyzer.core.subject.muscle_strength import force_factors
-from muscle_analyzer.core.subject.segment_masses import MassDistribution, segment_masses
 from muscle_analyzer.core.transfer.motion_transfer import MotionTransfer
 
-#: Where a motion may come from.
+#: Sources of a motion.
 SOURCES = ('live', 'measured', 'predicted')
-#: Motions that come while live ones go on: what they need is built before.
+#: Motions that arrive during live ones: their solvers are built in advance.
 STREAMS = (('measured', '3d_40dof'), ('predicted', '3d_40dof'), ('predicted', '2d_10dof'))
 _SKELETONS: dict[str, type[Skeleton2D] | type[Skeleton3D]] = {
     '2d_10dof': Skeleton2D,
@@ -46,59 +42,46 @@ _SKELETONS: dict[str, type[Skeleton2D] | type[Skeleton3D]] = {
 class MuscleAnalyzer:
     """Muscle analysis of one subject.
 
-    Call `configure` once per subject, then `analyze` on block after block.  A live stream of
-    blocks is warm-started from sample to sample; lifts start afresh.
+    A live stream of blocks is warm-started from sample to sample; each lift starts afresh.  The
+    constructor scales the model and loads the compiled functions, so that the first sample takes
+    no longer than the others.
+
+    Parameters
+    ----------
+    subject : Subject
+    options : MuscleAnalyzerOptions, optional
+    model : OsimModel, optional
+        The generic model, if it has been read before; otherwise it is read from
+        ``options.model_path``.
+
+    Raises
+    ------
+    MuscleAnalyzerError
+        If the model cannot be read or scaled, or an option cannot be used.
+    HumanModelError
+        If the subject's measures cannot be used.
     """
 
-    def __init__(self, options: MuscleAnalyzerOptions | None = None) -> None:
+    def __init__(
+        self,
+        subject: Subject,
+        options: MuscleAnalyzerOptions | None = None,
+        model: OsimModel | None = None,
+    ) -> None:
+        self.subject = subject
         self.options = options or MuscleAnalyzerOptions()
-        disc_option(self.options.disc_frame)  # An unknown one is refused here already.
-        self._generic: OsimModel | None = None
-        self._subject: Subject | None = None
+        disc_option(self.options.disc_frame)  # Refuses an unknown one before the model is read.
+        self.generic_model = model or read_generic_model(self.options)
+        skeleton = Skeleton3D.of(subject)
+        self._model = scaled_model(self.generic_model, skeleton, subject, self.options)
         self._streams: dict[tuple[str, str], tuple[MotionTransfer, BlockSolver]] = {}
         self._limits: dict[str, TorqueLimits] = {}
-
-    def configure(self, subject: Subject) -> None:
-        """Scale the model to a subject and prepare everything that a sample needs.
-
-        Raises
-        ------
-        MuscleAnalyzerError
-            If the model cannot be read or scaled.
-        HumanModelError
-            If the subject's measures cannot be used.
-        """
-        self._generic = self._generic or self._read()
-        skeleton = Skeleton3D.of(subject)
-        upright = np.zeros(len(skeleton.coordinates))
-        own = self.options.mass_distribution is MassDistribution.SEGMENTS
-        self._model = subject_model(
-            self._generic,
-            skeleton.points(upright),
-            skeleton.parameters.lengths,
-            subject.mass,
-            force_factors(self._generic, subject, self.options.muscle_strength),
-            segment_masses(skeleton) if own else None,
-        )
-        self._subject = subject
-        self._streams = {}
-        self._limits = {}
-        # Live and recorded 3D motion share all compiled functions: load them now.
+        # Live and recorded 3D motion share all compiled functions.
         self._warm_up(skeleton)
 
-    def prepare(self) -> None:
-        """Do what takes time and needs no subject: read the model, load the compiled functions.
-
-        Raises
-        ------
-        MuscleAnalyzerError
-            If the model cannot be read or an option cannot be used.
-        """
-        self.configure(named_subject(subject_names()[0]))
-        self._subject = None
-
-    def _read(self) -> OsimModel:
-        return load_model(self.options.model_path or lifting_model_path())
+    def for_subject(self, subject: Subject) -> MuscleAnalyzer:
+        """Return the analyzer of another subject with the same options and generic model."""
+        return MuscleAnalyzer(subject, self.options, self.generic_model)
 
     def _warm_up(self, skeleton: Skeleton) -> None:
         q = skeleton.standing()
@@ -109,37 +92,29 @@ class MuscleAnalyzer:
             self._stream(source, name)
 
     def _stream(self, source: str, skeleton: str) -> tuple[MotionTransfer, BlockSolver]:
-        """Give the warm-started solvers of one kind of motion."""
+        """Return the warm-started solvers of one kind of motion."""
         key = (source, skeleton)
         if key not in self._streams:
-            assert self._subject is not None
-            own = _SKELETONS[skeleton].of(self._subject)
+            own = _SKELETONS[skeleton].of(self.subject)
             self._streams[key] = (
                 MotionTransfer(self._model, own),
                 BlockSolver(self._model, self.options),
             )
             if skeleton not in self._limits:
                 self._limits[skeleton] = TorqueLimits(
-                    self._subject, skeleton, own.coordinates, self.options.coefficient_set
+                    self.subject, skeleton, own.coordinates, self.options.coefficient_set
                 )
         return self._streams[key]
 
     def new_transfer(self, skeleton: str) -> MotionTransfer:
-        """Give a transfer of its own from a skeleton to the subject's model, as `analyze` uses it.
+        """Return a new transfer from a skeleton to the subject's model, as `analyze` uses it.
 
         Parameters
         ----------
         skeleton
             Its name, as in `BodyMotion.skeleton`.
-
-        Raises
-        ------
-        NotConfiguredError
-            If no subject has been given.
         """
-        if self._subject is None:
-            raise NotConfiguredError('new_transfer: no subject yet, call configure first')
-        return MotionTransfer(self._model, _SKELETONS[skeleton].of(self._subject))
+        return MotionTransfer(self._model, _SKELETONS[skeleton].of(self.subject))
 
     def analyze(
         self,
@@ -162,20 +137,16 @@ class MuscleAnalyzer:
         tracker_status
             (n,) SolveStatus of the motion tracker per sample; none if the motion was not tracked.
         continued
-            Whether this block goes on where the one before of the same source ended: a lift in
+            Whether this block continues the previous one of the same source: a lift in
             parts has the same results as in one block (`analysis.JoinedParts`).
 
         Raises
         ------
-        NotConfiguredError
-            If no subject has been given.
         TransferError
             If the motion is not one of this subject.
         InputArrayError
             If the source is not known or not every sample has a status.
         """
-        if self._subject is None:
-            raise NotConfiguredError('analyze: no subject yet, call configure first')
         if source not in SOURCES:
             raise InputArrayError(f'source {source!r}: one of {SOURCES} is needed')
         tracked = np.zeros(len(motion), np.int64)
@@ -193,11 +164,11 @@ class MuscleAnalyzer:
         began = time.perf_counter()
         poses = transfer.block(motion)
         elapsed = time.perf_counter() - began
-        origin = Origin(lift_id, source, self._subject.pseudonym, self._subject.mass)
+        origin = Origin(lift_id, source, self.subject.pseudonym, self.subject.mass)
         return solver.solve(poses, motion, tracked, origin, elapsed)
 
     def joint_torques(self, analysis: MuscleAnalysis, motion: BodyMotion) -> JointTorques:
-        """Put the joint torques of an analysis beside the dynamic strength of the joints.
+        """Return the joint torques of an analysis with the dynamic strength of the joints.
 
         Parameters
         ----------
@@ -208,13 +179,7 @@ class MuscleAnalyzer:
 
         Raises
         ------
-        NotConfiguredError
-            If no subject has been given.
         InputArrayError
             If the two do not belong together.
         """
-        if self._subject is None:
-            raise NotConfiguredError('joint_torques: no subject yet, call configure first')
-        if motion.skeleton not in self._limits:
-            raise InputArrayError(f'no {motion.skeleton} motion has been analysed')
         return self._limits[motion.skeleton].of(analysis, motion)
