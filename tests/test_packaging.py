@@ -47,6 +47,7 @@ HEADER = (
 ROSDEP_KEYS = {
     'ament_index_python': 'ament_index_python',
     'backports': 'python3-rosbags-pip',
+    'jinja2': 'python3-jinja2',
     'lz4': 'python3-rosbags-pip',
     'matplotlib': 'python3-matplotlib',
     'numba': 'python3-numba',

@@ -163,7 +163,7 @@ def test_symmetric_optimum_is_the_sagittal_one(
     )  # fmt: skip
     flat_parameters = replace(parameters, circle=np.zeros_like(parameters.circle), box_radius=0.0)
     flat = predictor.programme.solve(flat_parameters.pack(), bounds, Start('same', start, 7.0))
-    assert flat.converged, flat.outcome
+    assert flat.converged, flat.status
     assert solution.objective == pytest.approx(2.0 * flat.objective, rel=1e-4)
     for column, joint in enumerate(JOINTS):
         for name in PLANAR[joint]:

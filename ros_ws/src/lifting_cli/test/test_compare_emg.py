@@ -162,14 +162,14 @@ def test_report_of_a_run_shows_the_emg_of_its_recording(run_with_emg, bag_with_e
     section = page.partition('EMG beside the computed activations')[2]
     assert 'Vastus medialis, left' in section
     # EMG1 names no muscle: it is left out, and the page says so.
-    assert 'Not compared: EMG channel &#x27;EMG1&#x27; names no muscle and side' in section
-    shown = re.search(r'<td>VML</td>.*?([−\d]+)&#8239;ms', section)
+    assert 'Not compared: EMG channel &#39;EMG1&#39; names no muscle and side' in section
+    shown = re.search(r'<td>VML</td>.*?([−\d]+)\u202fms', section)
     assert float(shown[1].replace('−', '-')) == pytest.approx(1e3 * EARLY, abs=20.0)
     again = tmp_path / 'again.html'
     results = str(run_with_emg / 'results.mcap')
     recording = ['--recording', str(bag_with_emg)]
     assert main(['report', results, '--output', str(again), *recording]) == 0
-    assert f'{shown[1]}&#8239;ms' in again.read_text(encoding='utf-8')
+    assert f'{shown[1]}\u202fms' in again.read_text(encoding='utf-8')
     assert main(['report', results, '--output', str(again)]) == 0
     assert 'EMG beside' not in again.read_text(encoding='utf-8')
 

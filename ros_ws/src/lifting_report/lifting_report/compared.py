@@ -13,7 +13,7 @@ from human_model.typing import Array
 from injury_monitor.core.limits import read_limits
 from lifting_report.figures.curves import percent
 from lifting_report.figures.loads import LimitLine, MuscleGroup
-from lifting_report.lift_section import CRITERIA
+from lifting_report.pages import CRITERIA
 from lifting_report.report_data import Activations, Header, LiftReport, Missing, SpineCurves
 
 #: Components of the L5-S1 load: field of `SpineCurves` and its name on the page.

@@ -7,7 +7,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -24,10 +23,8 @@ from lifting_report.compared import (
 )
 from lifting_report.figures import compared_figures as figures
 from lifting_report.figures.loads import MuscleGroup, muscle_groups
-from lifting_report.html_parts import Card, absent, amount, cards, figure, table, text
-from lifting_report.model_limits import MODEL_LIMITS
-from lifting_report.page_style import CSS, SCRIPT
-from lifting_report.report_data import Missing, Pair
+from lifting_report.pages import Card, Drawing, amount, drawing, render_page, write_page
+from lifting_report.report_data import Missing
 
 #: Activations that differ by less are called equal: one hundredth of a muscle's strength.
 _EQUAL_ACTIVATION = 0.01
@@ -35,9 +32,7 @@ _EQUAL_ACTIVATION = 0.01
 
 def build_comparison(lifts: Two, created: str, path: Path) -> Path:
     """Write the page; return its path."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(render(lifts, created), encoding='utf-8')
-    return path
+    return write_page(path, render(lifts, created))
 
 
 def render(lifts: Two, created: str) -> str:
@@ -46,94 +41,69 @@ def render(lifts: Two, created: str) -> str:
     Parameters
     ----------
     lifts : two of ComparedLift
-        The first is the one that the second is compared with.
+        The second is compared with the first.
     created : str
         Date and time.
     """
-    title = f'Two lifts: {lifts[0].name} and {lifts[1].name}'
-    body = ''.join((
-        _head(lifts, title, created), _cards(lifts), _findings(lifts), _spine(lifts),
-        _feet(lifts), _muscles(lifts),
-        '<h2>Limits of the models</h2><ul class="plain">'
-        + ''.join(f'<li>{text(limit)}</li>' for limit in MODEL_LIMITS) + '</ul>'))  # fmt: skip
-    return (
-        '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8">'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f'<title>{text(title)}</title><style>{CSS}</style></head>'
-        f'<body><main>{body}</main><script>{SCRIPT}</script></body></html>\n'
+    return render_page(
+        'compared.html',
+        title=f'Two lifts: {lifts[0].name} and {lifts[1].name}',
+        created=created,
+        lifts=lifts,
+        simulated=[lift.name for lift in lifts if lift.header.simulated],
+        unequal=_unequal(lifts),
+        peak_cards=_cards(lifts),
+        findings=_findings(lifts),
+        spine=_spine(lifts),
+        peaks=_peak_rows(lifts),
+        beyond=_beyond_rows(lifts),
+        feet=_feet(lifts),
+        muscles=_muscles(lifts),
+        activations=_activation_rows(lifts),
     )
 
 
-def _head(lifts: Two, title: str, created: str) -> str:
-    simulated = [lift.name for lift in lifts if lift.header.simulated]
-    banner = (
-        '<p class="simulated"><strong>SIMULATED RECORDING.</strong> '
-        f'{text(" and ".join(simulated))}: made by a simulation, not recorded from a person. '
-        'What differs says what the models do with two such motions, not what people are '
-        'exposed to.</p>'
-        if simulated else '')  # fmt: skip
-    rows = [
-        [f'<strong>{text(lift.name)}</strong>', text(lift.header.description), _person(lift),
-         amount(lift.header.box_mass, 'kg', 1), amount(lift.lift.duration, 's', 2),
-         f'{lift.header.lifts_per_day:g}', text(lift.header.recording), text(lift.lift.lift_id)]
-        for lift in lifts
-    ]  # fmt: skip
-    head = ('lift', 'task', 'person', 'box', 'lasts', 'lifts a day', 'recording', 'number')
-    return (
-        f'<h1>{text(title)}</h1>' + banner + table(head, rows, (3, 4, 5)) + _unequal(lifts)
-        + '<p class="note">Recorded is what the person did, optimal the lift with the least joint '
-        'effort for the same person, box, feet and places. Differences are those of the second '
-        f'lift against the first. {text(created)}, version {text(lifts[0].header.version)}.</p>'
-    )  # fmt: skip
-
-
-def _person(lift: ComparedLift) -> str:
-    header = lift.header
-    return (
-        f'{text(header.subject)}, {text(header.sex)}, {amount(header.mass, "kg", 1)}, '
-        f'{amount(header.stature, "m", 2)}'
-    )
-
-
-def _unequal(lifts: Two) -> str:
-    """Say what else differs between the lifts than the task."""
+def _unequal(lifts: Two) -> list[str]:
+    """Return the differences of the lifts apart from the task."""
     first, second = (lift.header for lift in lifts)
-    different = [
-        words for words, a, b in (
-            ('the persons', (first.subject, first.mass), (second.subject, second.mass)),
-            ('the masses of the boxes', first.box_mass, second.box_mass),
-            ('the loads a day, and so perhaps the shear limit', first.lifts_per_day,
-             second.lifts_per_day),
-            ('the frames of the disc', _disc_frames(lifts[0]), _disc_frames(lifts[1])))
-        if a != b
-    ]  # fmt: skip
-    if not different:
-        return ''
-    return f'<p class="absent"><strong>Not equal:</strong> {text("; ".join(different))}.</p>'
+    compared = (
+        ('the persons', (first.subject, first.mass), (second.subject, second.mass)),
+        ('the masses of the boxes', first.box_mass, second.box_mass),
+        (
+            'the loads a day, and possibly the shear limit',
+            first.lifts_per_day,
+            second.lifts_per_day,
+        ),
+        ('the frames of the disc', _disc_frames(lifts[0]), _disc_frames(lifts[1])),
+    )
+    return [words for words, a, b in compared if a != b]
 
 
 def _disc_frames(lift: ComparedLift) -> list[str]:
     return sorted({part.disc_frame for part in lift.lift.spine.present().values()})
 
 
-def _cards(lifts: Two) -> str:
+def _cards(lifts: Two) -> list[Card]:
     items = []
     limits = published_limits()
     for component, name in COMPONENTS.items():
         peaks = [_peak(lift, 'measured', component)[0] for lift in lifts]
-        rows = [
-            (f'{text(lift.name)}, optimal', amount(_peak(lift, 'predicted', component)[0], 'N'))
+        rows = tuple(
+            (f'{lift.name}, optimal', amount(_peak(lift, 'predicted', component)[0], 'N'))
             for lift in lifts
-        ]
-        beyond = [
-            line for value in peaks for line in limits[component] if value >= line.value
-        ]  # fmt: skip
+        )
+        beyond = [line for value in peaks for line in limits[component] if value >= line.value]
         level = 'hazard' if any(line.hazardous for line in beyond) else 'action' if beyond else ''
-        items.append(Card(
-            f'Peak L5-S1 {text(name)}, recorded',
-            f'{amount(peaks[0])} <small>and</small> {amount(peaks[1], "N")}',
-            _difference(peaks, component), level, tuple(rows)))  # fmt: skip
-    return cards(items)
+        items.append(
+            Card(
+                f'Peak L5-S1 {name}, recorded',
+                f'{amount(peaks[0])} and {amount(peaks[1], "N")}',
+                _difference(peaks, component),
+                level,
+                rows,
+            )
+        )
+    return items
 
 
 def _peak(lift: ComparedLift, source: str, component: str) -> tuple[float, float]:
@@ -141,19 +111,19 @@ def _peak(lift: ComparedLift, source: str, component: str) -> tuple[float, float
 
 
 def _difference(peaks: list[float], component: str) -> str:
-    """Say by how much the second peak is higher or lower."""
+    """Return the difference of the second peak from the first, in words."""
     first, second = peaks
     if math.isnan(first) or math.isnan(second):
         return 'not comparable: a peak is missing'
     if component == 'lateral_shear':
-        return 'size, either way; no published limit'
+        return 'magnitude; no published limit'
     change = second - first
     word = 'higher' if change > 0.0 else 'lower'
     return f'{amount(abs(change), "N")} ({abs(change) / first:.0%}) {word}'
 
 
-def _findings(lifts: Two) -> str:
-    """Say in words what differs most."""
+def _findings(lifts: Two) -> list[str]:
+    """Return the largest differences in words."""
     second = lifts[1].name
     points = []
     for source, word in SOURCES.items():
@@ -163,10 +133,10 @@ def _findings(lifts: Two) -> str:
             points.append(
                 f'{word.capitalize()}: {second} has a peak compression '
                 f'{_difference(peaks, "compression")} and a peak anterior shear '
-                f'{_difference(shears, "anterior_shear")}.')  # fmt: skip
+                f'{_difference(shears, "anterior_shear")}.'
+            )
         points += _muscle_findings(lifts, source, word)
-    return '<h2>What differs</h2><ul class="plain">' + ''.join(
-        f'<li>{point}</li>' for point in points) + '</ul>'  # fmt: skip
+    return points
 
 
 def _muscle_findings(lifts: Two, source: str, word: str) -> list[str]:
@@ -185,13 +155,13 @@ def _muscle_findings(lifts: Two, source: str, word: str) -> list[str]:
     high, low = max(changes), min(changes)
     points = [
         f'{word.capitalize()}: of {len(changes)} muscles (left and right apart) {more} have a '
-        f'higher peak activation in {text(lifts[1].name)}, {fewer} a lower one; most up '
-        f'{text(high[1])} ({_signed(high[0])}), most down {text(low[1])} ({_signed(low[0])}).'
+        f'higher peak activation in {lifts[1].name}, {fewer} a lower one; most up '
+        f'{high[1]} ({_signed(high[0])}), most down {low[1]} ({_signed(low[0])}).'
     ]
     uneven = max(sides, key=lambda pair: -1.0 if math.isnan(pair[0]) else abs(pair[0]))
     if not math.isnan(uneven[0]):
         points.append(
-            f'{word.capitalize()}: {text(lifts[1].name)} is most uneven at {text(uneven[1])}, '
+            f'{word.capitalize()}: {lifts[1].name} is most uneven at {uneven[1]}, '
             f'whose peak on the left is {abs(uneven[0]):.2f} '
             f'{"higher" if uneven[0] > 0.0 else "lower"} than on the right.')  # fmt: skip
     return points
@@ -208,45 +178,46 @@ def _signed(value: float) -> str:
     return f'{value:+.2f}'.replace('-', '−')
 
 
-def _spine(lifts: Two) -> str:
+def _spine(lifts: Two) -> Drawing:
     frames = sorted({frame for lift in lifts for frame in _disc_frames(lift)})
     caption = (
-        'Force of S1 on L5 in the frame of the disc '
-        f'({text(", ".join(frames)) or "none"}). Lateral shear: positive where S1 pushes L5 to '
-        'the left; no limit is published for it. Gaps: samples that did not solve. '
-        + _reasons(lifts, 'spine')
+        f'Force of S1 on L5 in the frame of the disc ({", ".join(frames) or "none"}). Lateral '
+        'shear: positive if S1 pushes L5 to the left; no limit is published for it. Gaps: samples '
+        f'that did not solve. {_reasons(lifts, "spine")}'
     )
     limits = published_limits()
-    beyond = [
-        [text(COMPONENTS[component]), f'{text(line.name)}, {amount(line.value, "N")}', word,
-         *(_beyond(lift, source, component, line.value) for lift in lifts)]
-        for component, lines in limits.items() for line in lines
+    return _drawn(
+        lifts,
+        'spine',
+        'L5-S1 compression and shear',
+        lambda: figures.spine_loads(lifts, limits, 'spine'),
+        caption,
+    )
+
+
+def _beyond_rows(lifts: Two) -> list[list[str]]:
+    """Return the fraction of each lift at or above each limit."""
+    return [
+        [
+            COMPONENTS[component],
+            f'{line.name}, {amount(line.value, "N")}',
+            word,
+            *(
+                amount(share_beyond(getattr(lift.lift.spine, source), component, line.value), '%')
+                for lift in lifts
+            ),
+        ]
+        for component, lines in published_limits().items()
+        for line in lines
         for source, word in SOURCES.items()
-    ]  # fmt: skip
-    names = [text(lift.name) for lift in lifts]
-    return (
-        '<h2>Load on L5-S1</h2>'
-        + _drawn(lifts, 'spine', 'L5-S1 compression and shear',
-                 lambda: figures.spine_loads(lifts, limits, 'spine'), caption)
-        + '<h3>Peaks</h3>' + table(
-            ('load', 'lift', names[0], 'per body mass', 'at', names[1], 'per body mass', 'at',
-             'difference', ''), _peak_rows(lifts), (2, 3, 4, 5, 6, 7, 8, 9))
-        + '<h3>How long a limit is reached or exceeded</h3>'
-        + table(('load', 'limit', 'lift', *names), beyond, (3, 4))
-        + '<p class="note">Share of the solved samples. “At”: course of the lift. Lateral shear: '
-        'largest size, with its sign.</p>'
-    )  # fmt: skip
-
-
-def _beyond(lift: ComparedLift, source: str, component: str, limit: float) -> str:
-    return amount(share_beyond(getattr(lift.lift.spine, source), component, limit), '%')
+    ]
 
 
 def _peak_rows(lifts: Two) -> list[list[str]]:
     rows = []
     for component, name in COMPONENTS.items():
         for source, word in SOURCES.items():
-            row = [text(name), word]
+            row = [name, word]
             peaks = []
             for lift in lifts:
                 largest, at = _peak(lift, source, component)
@@ -262,35 +233,41 @@ def _peak_rows(lifts: Two) -> list[list[str]]:
     return rows
 
 
-def _feet(lifts: Two) -> str:
-    caption = (
-        'Of the ground on each foot. A lift predicted in the sagittal plane loads both '
-        'feet alike. ' + _reasons(lifts, 'ground')
+def _feet(lifts: Two) -> Drawing:
+    return _drawn(
+        lifts,
+        'ground',
+        'Vertical force on each foot',
+        lambda: figures.foot_forces(lifts, 'feet'),
+        'Force of the ground on each foot. A lift predicted in the sagittal plane loads both feet '
+        f'equally. {_reasons(lifts, "ground")}',
     )
-    return '<h2>Ground reaction</h2>' + _drawn(
-        lifts, 'ground', 'Vertical force on each foot',
-        lambda: figures.foot_forces(lifts, 'feet'), caption)  # fmt: skip
 
 
-def _muscles(lifts: Two) -> str:
-    parts = ['<h2>Muscles</h2>']
-    for source, word in SOURCES.items():
-        title = f'Muscle activations, {word} lifts'
-        missing = [getattr(lift.lift.activations, source) for lift in lifts]
-        if all(isinstance(part, Missing) for part in missing):
-            parts.append(absent(title, '; '.join(part.reason for part in missing)))
-            continue
-        parts.append(figure(
-            title, figures.muscle_activations(lifts, source, f'muscles-{source}'),
-            'Mean over the fascicles of the muscle on that side. Gaps: samples that did not '
-            f'solve{_gaps(lifts, source)}. ' + _reasons(lifts, 'activations')))  # fmt: skip
-    names = [text(lift.name) for lift in lifts]
-    head = ('muscle', 'side', f'{names[0]}, recorded', f'{names[1]}, recorded', 'difference',
-            f'{names[0]}, optimal', f'{names[1]}, optimal', 'difference')  # fmt: skip
+def _muscles(lifts: Two) -> list[Drawing]:
+    return [
+        _drawn_muscles(lifts, source, f'Muscle activations, {word} lifts')
+        for source, word in SOURCES.items()
+    ]
+
+
+def _drawn_muscles(lifts: Two, source: str, title: str) -> Drawing:
+    parts = [getattr(lift.lift.activations, source) for lift in lifts]
+    if all(isinstance(part, Missing) for part in parts):
+        return Drawing(title, '', '; '.join(part.reason for part in parts))
+    caption = (
+        'Mean over the fascicles of the muscle on that side. Gaps: samples that did not solve'
+        f'{_gaps(lifts, source)}. {_reasons(lifts, "activations")}'
+    )
+    svg = figures.muscle_activations(lifts, source, f'muscles-{source}')
+    return Drawing(title, svg, caption.strip())
+
+
+def _activation_rows(lifts: Two) -> list[list[str]]:
     rows = []
     for group in muscle_groups():
         for side in SIDES:
-            row = [text(group.name), side]
+            row = [group.name, side]
             for source in SOURCES:
                 peaks = [_muscle_peak(lift, source, group, side) for lift in lifts]
                 row += [
@@ -299,30 +276,28 @@ def _muscles(lifts: Two) -> str:
                     _signed(peaks[1] - peaks[0]),
                 ]
             rows.append(row)
-    return ''.join(parts) + '<h3>Peak activations</h3>' + table(head, rows, range(2, 8))
+    return rows
 
 
 def _gaps(lifts: Two, source: str) -> str:
-    """Say how many samples of each lift are gaps, in which a peak may be hidden."""
+    """Return the number of missing samples of each lift, in words."""
     counts = [
-        f'{np.count_nonzero(~part.solved)} of {part.solved.size} in {text(lift.name)}'
+        f'{np.count_nonzero(~part.solved)} of {part.solved.size} in {lift.name}'
         for lift in lifts
         if not isinstance(part := getattr(lift.lift.activations, source), Missing)
         and not part.solved.all()
     ]
-    return f' ({", ".join(counts)}; a peak in one is not seen)' if counts else ''
+    return f' ({", ".join(counts)}; a peak in a gap is not found)' if counts else ''
 
 
-def _drawn(lifts: Two, part: str, title: str, draw: Callable[[], str], caption: str) -> str:
-    """Return a figure, or the reasons if no lift has what it shows."""
-    pairs: list[Pair[Any]] = [getattr(lift.lift, part) for lift in lifts]
-    if not any(pair.present() for pair in pairs):
-        return absent(title, _reasons(lifts, part))
-    return figure(title, draw(), caption.strip())
+def _drawn(lifts: Two, part: str, title: str, draw: Callable[[], str], caption: str) -> Drawing:
+    """Return a figure, or the reasons if no lift has the part."""
+    missing = not any(getattr(lift.lift, part).present() for lift in lifts)
+    return drawing(title, draw, caption.strip(), _reasons(lifts, part) if missing else '')
 
 
 def _reasons(lifts: Two, part: str) -> str:
     return ' '.join(
-        f'{text(lift.name)}, {SOURCES[source]}: not available, {text(reason)}.'
+        f'{lift.name}, {SOURCES[source]}: not available, {reason}.'
         for lift in lifts for source, reason in getattr(lift.lift, part).missing().items()
     )  # fmt: skip

@@ -19,12 +19,9 @@ from lifting_report.figures.style import (
     to_svg,
 )
 from lifting_report.findings import EmgFindings
-from lifting_report.html_parts import absent, amount, figure, table, text
-from lifting_report.page_style import CSS
+from lifting_report.pages import SIDES, Drawing, drawing, render_page, write_page
 from muscle_analyzer.core.emg.comparison import EmgMatch
-from muscle_analyzer.core.emg.envelopes import GIVEN_MVC
 
-SIDES = {'r': 'right', 'l': 'left'}
 _COLUMNS = 2
 _PANEL = 1.75
 
@@ -41,46 +38,27 @@ def build_emg_page(matches: Sequence[EmgMatch], title: str, path: Path) -> Path:
     path : Path
         Of the HTML file.
     """
-    body = f'<h1>EMG and activations</h1><p class="lead">{text(title)}</p>' + emg_part(
-        EmgFindings(tuple(matches)), 'emg'
-    )
-    page = (
-        '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8">'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f'<title>{text(title)}</title><style>{CSS}</style></head>'
-        f'<body><main>{body}</main></body></html>\n'
-    )
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(page, encoding='utf-8')
-    return path
+    findings = EmgFindings(tuple(matches))
+    drawn = emg_drawing(findings.matches, 'emg')
+    page = render_page('emg.html', title=title, findings=findings, drawing=drawn)
+    return write_page(path, page)
 
 
-def emg_part(findings: EmgFindings, name: str) -> str:
-    """Return figure and table of a lift's EMG as HTML; `name` makes ids unique."""
-    caption = (
-        'EMG: band-pass 10 to 450 Hz, rectified, low-pass 5 Hz, without delay, as a share of the '
-        'maximum voluntary contraction or else of the maximum of the recording. Computed: mean '
-        'activation of the parts of the muscle in the model. No co-contraction is computed beyond '
-        'what balance needs.'
-    )
-    head = ('channel', 'muscle', 'side', 'EMG is a share of', 'correlation', 'phase error',
-            'of the lift', 'correlation then', 'rms', '')  # fmt: skip
-    left_out = ''.join(f'<p class="note">Not compared: {text(why)}</p>'
-                       for why in findings.left_out)  # fmt: skip
-    matches = findings.matches
-    if not matches:
-        return absent('EMG', 'no channel could be compared') + left_out
-    return (
-        figure('Envelope of the EMG and computed activation', curves(matches, name), caption)
-        + table(head, [_row(match) for match in matches], (4, 5, 6, 7, 8))
-        + '<p class="note">Phase error: shift of the activation against the EMG at which both '
-        'correlate best, positive if the activation is later. The rms says something only where '
-        'an MVC was given.</p>' + left_out
+def emg_drawing(matches: Sequence[EmgMatch], name: str) -> Drawing:
+    """Return the figure of the EMG of a lift; `name` makes its ids unique."""
+    return drawing(
+        'Envelope of the EMG and computed activation',
+        lambda: curves(matches, name),
+        'EMG: band-pass 10 to 450 Hz, rectified, low-pass 5 Hz, without delay, as a fraction of '
+        'the maximum voluntary contraction, otherwise of the maximum of the recording. Computed: '
+        'mean activation of the parts of the muscle in the model. Co-contraction is computed only '
+        'as far as the balance needs it.',
+        '' if matches else 'no channel could be compared',
     )
 
 
 def curves(matches: Sequence[EmgMatch], name: str) -> str:
-    """Draw a panel a channel, over the course of the lift."""
+    """Draw one panel per channel, over the course of the lift."""
     lines = math.ceil(len(matches) / _COLUMNS)
     with figure_style():
         drawing, panels = new_figure(0.9 + _PANEL * lines, lines, _COLUMNS)
@@ -98,18 +76,3 @@ def curves(matches: Sequence[EmgMatch], name: str) -> str:
         figure_legend(drawing, panels[0])
         names = ', '.join(f'{m.muscle} {SIDES[m.side]}' for m in matches)
         return to_svg(drawing, name, f'EMG and computed activation of {names}')
-
-
-def _row(match: EmgMatch) -> list[str]:
-    return [
-        text(match.channel),
-        text(match.muscle),
-        SIDES[match.side],
-        text('MVC' if match.normalised_by == GIVEN_MVC else match.normalised_by),
-        amount(match.correlation, digits=2),
-        amount(1e3 * match.lag, 'ms'),
-        amount(match.lag_percent, '%', 1),
-        amount(match.best_correlation, digits=2),
-        amount(match.rms, digits=3),
-        text(match.note),
-    ]

@@ -56,7 +56,7 @@ class Risk:
     Attributes
     ----------
     criteria : tuple of CriterionRow
-    unnecessary_compression, unnecessary_shear : float
+    avoidable_compression, avoidable_shear : float
         Measured minus predicted peak [N]; NaN without a prediction.
     zone : str
         ``nominal``, ``action``, ``hazardous`` or ``unknown`` (NIOSH 1981).
@@ -65,8 +65,8 @@ class Risk:
     """
 
     criteria: tuple[CriterionRow, ...]
-    unnecessary_compression: float
-    unnecessary_shear: float
+    avoidable_compression: float
+    avoidable_shear: float
     zone: str
     summary: str
     samples_left_out: int

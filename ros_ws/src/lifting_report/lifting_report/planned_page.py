@@ -11,19 +11,7 @@ from pathlib import Path
 from human_model.constants import GRAVITY
 from lifting_report.figures import curves, loads, stick_figures
 from lifting_report.figures.loads import LimitLine
-from lifting_report.html_parts import (
-    Card,
-    absent,
-    amount,
-    cards,
-    facts,
-    figure,
-    pill,
-    table,
-    text,
-)
-from lifting_report.model_limits import MODEL_LIMITS
-from lifting_report.page_style import CSS, SCRIPT
+from lifting_report.pages import Card, Drawing, drawing, render_page, write_page
 from lifting_report.report_data import (
     Activations,
     BodyPoints,
@@ -37,7 +25,7 @@ from lifting_report.report_data import (
     Torques,
 )
 
-_NOBODY = Missing('nobody was recorded')
+_NOT_RECORDED = Missing('no lift was recorded')
 
 
 @dataclass(frozen=True)
@@ -98,70 +86,26 @@ class PlannedReport:
 
 
 def build_planned(report: PlannedReport, path: Path) -> Path:
-    """Write the page; its folder is made if it is not there."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(render_planned(report), encoding='utf-8')
-    return path
+    """Write the page; the folder is created if necessary."""
+    return write_page(path, render_planned(report))
 
 
 def render_planned(report: PlannedReport) -> str:
     """Return the page as HTML text."""
     title = f'Planned lift: {report.header.task}, {report.header.subject}'
-    body = ''.join((_header(report), _verdict(report), _figures(report), _tables(report)))
-    return (
-        f'<!DOCTYPE html><html lang="en"><head><meta charset="utf-8">'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f'<title>{text(title)}</title><style>{CSS}</style></head>'
-        f'<body><main>{body}</main><script>{SCRIPT}</script></body></html>\n'
-    )
+    drawings = () if report.drawn is None else _drawings(report, report.drawn)
+    return render_page('planned.html', title=title, report=report, drawings=drawings)
 
 
-def _header(report: PlannedReport) -> str:
-    header = report.header
-    return (
-        f'<h1>Planned lift: {text(header.task)}</h1><p class="lead">{text(header.description)}</p>'
-        '<p class="simulated"><strong>NOBODY LIFTED THIS.</strong> The lift was computed from the '
-        'task and the person alone: the one with the least joint effort that keeps all limits of '
-        'the model.</p>'
-        + facts(
-            (
-                ('Person (pseudonym)', text(header.subject)),
-                (
-                    'Body',
-                    f'{text(header.sex)}, {amount(header.age, "years")}, '
-                    f'{amount(header.mass, "kg", 1)}, {amount(header.stature, "m", 2)}',
-                ),
-                (
-                    'Work',
-                    f'{header.lifts_per_day:g} lifts a day, {header.lifts_per_minute:g} a '
-                    f'minute, {header.duration_hours:g} h',
-                ),
-                *((name, text(value)) for name, value in report.facts),
-                ('Report', f'{text(header.created)}, version {text(header.version)}'),
-            )
-        )
-    )
-
-
-def _verdict(report: PlannedReport) -> str:
-    label = pill(
-        'can be done' if report.good else 'cannot be done', 'good' if report.good else 'hazard'
-    )
-    lead = f'<p class="lead">{label} {text(report.status)}: {text(report.message)}</p>'
-    return '<h2>Result</h2>' + lead + (cards(report.cards) if report.cards else '')
-
-
-def _figures(report: PlannedReport) -> str:
-    if report.drawn is None:
-        return absent('Figures', 'there is no lift to draw')
-    drawn, weight = report.drawn, report.header.mass * GRAVITY
+def _drawings(report: PlannedReport, drawn: PlannedCurves) -> tuple[Drawing, ...]:
+    weight = report.header.mass * GRAVITY
     spine, muscles, angles = drawn.spine, drawn.activations, drawn.angles
-    parts = [
+    return (
         _figure(
             'The lift, step by step',
             drawn.points,
             lambda pair: stick_figures.stick_sequence(pair, 'planned-stick'),
-            'Seen from the right; right limbs dark, left limbs light.',
+            'View from the right; right limbs dark, left limbs light.',
         ),
         _figure(
             'Joint angles',
@@ -200,44 +144,15 @@ def _figures(report: PlannedReport) -> str:
             'Muscle activations',
             muscles,
             lambda pair: loads.muscle_activations(pair, 'planned-muscles'),
-            'Share of the strength of the muscle in use. Thick: mean over all fascicles of '
+            'Fraction of the strength of the muscle in use. Thick: mean over all fascicles of '
             'both sides; thin: the most active fascicle.',
         ),
-    ]
-    return f'<h2>{text(report.shown)}</h2>' + ''.join(parts)
+    )
 
 
-def _figure(title: str, part: T | Missing, draw: Callable[[Pair[T]], str], caption: str) -> str:
+def _figure(
+    title: str, part: T | Missing, draw: Callable[[Pair[T]], str], caption: str
+) -> Drawing:
     if isinstance(part, Missing):
-        return absent(title, part.reason)
-    return figure(title, draw(Pair(_NOBODY, part)), caption)
-
-
-def _tables(report: PlannedReport) -> str:
-    parts = []
-    if report.peaks:
-        rows = [
-            [
-                text(joint),
-                amount(torque, 'N m', 1),
-                amount(limit, 'N m', 1),
-                amount(100.0 * share, '%', 1),
-                amount(time, 's', 2),
-            ]
-            for joint, torque, limit, share, time in report.peaks
-        ]
-        parts.append(
-            '<h2>Joints nearest to their limits</h2>'
-            + table(('joint', 'torque', 'dynamic strength', 'share', 'at'), rows, (1, 2, 3, 4))
-        )
-        touched = ''.join(f'<li>{text(name)}</li>' for name in report.binding) or '<li>none</li>'
-        parts.append(f'<h3>Limits that the lift touches</h3><ul class="plain">{touched}</ul>')
-    parts.append(
-        '<h2>Solve report</h2>' + facts((name, text(value)) for name, value in report.solves)
-    )
-    parts.append(
-        '<h2>Limits of the models</h2><ul class="plain">'
-        + ''.join(f'<li>{text(limit)}</li>' for limit in MODEL_LIMITS)
-        + '</ul>'
-    )
-    return ''.join(parts)
+        return Drawing(title, '', part.reason)
+    return drawing(title, lambda: draw(Pair(_NOT_RECORDED, part)), caption)

@@ -18,7 +18,7 @@ from lift_predictor.core.sagittal.person import Person
 from lifting_report import __version__
 from lifting_report import results_curves as curves
 from lifting_report.figures.loads import LimitLine
-from lifting_report.html_parts import Card, amount, text
+from lifting_report.pages import Card, amount
 from lifting_report.planned_page import PlannedCurves, PlannedReport, build_planned
 from lifting_report.planned_results import PlanFiles, SpinePeak
 from lifting_report.report_data import Header, Missing
@@ -162,20 +162,21 @@ def _spine_cards(spine: SpinePeak | None, planned: PlannedLift) -> tuple[Card, .
     beyond = spine.anterior_shear >= shear.value
     return (
         Card(
-            'Peak L5-S1 compression', _force(spine.compression, planned), text(spine.zone), level,
-            tuple((text(line.name), amount(line.value, 'N')) for line in (action, largest)),
+            'Peak L5-S1 compression', amount(spine.compression, 'N'), spine.zone, level,
+            tuple((line.name, amount(line.value, 'N')) for line in (action, largest)),
+            _per_kilogram(spine.compression, planned),
         ),
         Card(
-            'Peak L5-S1 anterior shear', _force(spine.anterior_shear, planned),
+            'Peak L5-S1 anterior shear', amount(spine.anterior_shear, 'N'),
             'at or above the limit' if beyond else 'below the limit',
-            'action' if beyond else 'good', ((text(shear.name), amount(shear.value, 'N')),),
+            'action' if beyond else 'good', ((shear.name, amount(shear.value, 'N')),),
+            _per_kilogram(spine.anterior_shear, planned),
         ),
     )  # fmt: skip
 
 
-def _force(value: float, planned: PlannedLift) -> str:
-    per_kilogram = amount(value / planned.subject.mass, 'N/kg', 1)
-    return f'{amount(value, "N")} <small>{per_kilogram}</small>'
+def _per_kilogram(value: float, planned: PlannedLift) -> str:
+    return amount(value / planned.subject.mass, 'N/kg', 1)
 
 
 def _torque_card(peaks: tuple[tuple[str, float, float, float, float], ...]) -> Card:
@@ -183,8 +184,14 @@ def _torque_card(peaks: tuple[tuple[str, float, float, float, float], ...]) -> C
     # The check between the nodes lets 0.5 N m through.
     verdict = 'at its dynamic strength' if share >= 0.995 else 'below its dynamic strength'
     return Card(
-        'Joint nearest to its limit', f'{amount(100.0 * share, "%")} <small>{text(joint)}</small>',
-        verdict, 'action' if share >= 0.995 else 'good',
-        (('torque', amount(torque, 'N m', 1)), ('dynamic strength', amount(limit, 'N m', 1)),
-         ('reached', f'{amount(time, "s", 2)} after the start')),
-    )  # fmt: skip
+        'Joint nearest to its limit',
+        amount(100.0 * share, '%'),
+        verdict,
+        'action' if share >= 0.995 else 'good',
+        (
+            ('torque', amount(torque, 'N m', 1)),
+            ('dynamic strength', amount(limit, 'N m', 1)),
+            ('reached', f'{amount(time, "s", 2)} after the start'),
+        ),
+        joint,
+    )

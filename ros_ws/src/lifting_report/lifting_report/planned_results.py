@@ -188,7 +188,7 @@ def _run(run: Any) -> dict[str, Any]:
             'solve_time': ended.solve_time,
         }
     return plain | {
-        'outcome': run.outcome,
+        'outcome': run.status,
         'objective': run.objective,
         'iterations': run.iterations,
         'violation': run.violation,

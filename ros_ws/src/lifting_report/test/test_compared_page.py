@@ -99,7 +99,7 @@ def page():
 
 
 def test_differences_are_told_in_words(page):
-    assert '600&#8239;N (20%) higher' in page
+    assert '600\u202fN (20%) higher' in page
     assert 'most up vastus lateralis left (+0.30)' in page
     assert 'on the left is 0.50 higher than on the right' in page
     assert 'Not equal' not in page

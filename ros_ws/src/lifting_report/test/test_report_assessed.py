@@ -63,7 +63,7 @@ def message():
 
 def test_criteria_keep_their_numbers_and_get_joint_names(message):
     risk = risk_from_assessment(message)
-    assert risk.zone == 'action' and math.isnan(risk.unnecessary_compression)
+    assert risk.zone == 'action' and math.isnan(risk.avoidable_compression)
     assert risk.find('compression_action', 'measured').value == 3600.0
     assert risk.find('torque_index', 'measured').detail == 'knee'
     assert risk.find('shear_', 'measured').limit == 1000.0

@@ -47,7 +47,7 @@ MUSCLES = ('bflh_r', 'bflh_l', 'bfsh_r', 'vaslat_r', 'vaslat_l', 'vasmed_r', 'gl
            'EO1_r', 'IO6_l')
 PHRASES = (
     'SIMULATED RECORDING', 'P07', 'symmetric_12kg', 'made_up.mcap', '63.5',
-    'NIOSH action limit, 3400 N', 'needs controls', 'not necessary', '1230',
+    'NIOSH action limit, 3400 N', 'above the NIOSH action limit', 'avoidable', '1230',
     'Joint angles', 'Ground reaction', 'Joint torques', 'Torque index',
     'Muscle activations', 'lift_001', 'lift_002', 'RWL', 'LI', 'HM',
     'angle [deg]', 'force [N]', 'torque [N m]', 'activation [1]',
