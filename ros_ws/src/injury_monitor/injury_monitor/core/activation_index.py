@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Activation index: how high a muscle's activation was held (thesis section 4.2.2).
+"""Activation index: how high a muscle's activation stays (thesis section 4.2.2).
 
 The thesis says that the risk grows as an activation stays near 1 for a period and gives neither a
 period nor a formula. The index here is the largest mean activation over a sliding window. The

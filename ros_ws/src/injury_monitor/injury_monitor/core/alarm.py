@@ -24,7 +24,7 @@ class AlarmState(IntEnum):
 
 
 class Trigger(Enum):
-    """What can change the state of an alarm."""
+    """Causes of a change of the state of an alarm."""
 
     RAISE = 'raise'
     CLEAR = 'clear'

@@ -35,7 +35,7 @@ class AlarmEvent:
         The same for all transitions from a raise until the next one; '' before the first raise.
     alarm, station : str
     trigger : Trigger
-        What caused the transition.
+        Cause of the transition.
     previous_state, state : AlarmState
     severity : int
     value, limit, margin : float

@@ -19,9 +19,9 @@ class InvalidInputError(InjuryMonitorError, ValueError):
     field : str
         Name of the field.
     value : object
-        What was given.
+        Value that was given.
     reason : str
-        What the field must be.
+        Requirement on the field.
     """
 
     def __init__(self, field: str, value: object, reason: str) -> None:
@@ -40,9 +40,9 @@ class DataFileError(InjuryMonitorError):
     field : str
         Row and column concerned.
     value : object
-        What stands there.
+        Value in the file.
     reason : str
-        What must stand there.
+        Requirement on the value.
     """
 
     def __init__(self, file: str, field: str, value: object, reason: str) -> None:

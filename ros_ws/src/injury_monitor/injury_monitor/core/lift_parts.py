@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Collects the parts of a lift that arrive one by one and says when it can be assessed."""
+"""Collection of the parts of a lift, which arrive one by one, until it can be assessed."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class SpineSeries:
 
 @dataclass
 class LiftParts:
-    """What is known of one lift so far.
+    """Parts of one lift that have arrived.
 
     Attributes
     ----------

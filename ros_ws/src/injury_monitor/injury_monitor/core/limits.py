@@ -70,7 +70,7 @@ class LimitSet:
     torque_index, activation_index : Limit
         Limits of the two indices.
     loads_per_day : float
-        What the shear limit was chosen for.
+        Loads per day that select the shear limit.
     shear_within_source : bool
         False if the loads a day lie beyond what the shear limits were published for; then the
         limit of the highest published number of loads is used and may be too high.

@@ -30,7 +30,7 @@ from injury_monitor.core.validation import all_finite, array, finite, positive
 from injury_monitor.core.work import Work
 
 # Longest shelving [s]: one shift, so that no alarm stays shelved into the next one
-# (engineering choice; ISA-18.2 asks for a limit and leaves its length to the plant).
+# (engineering choice; ISA-18.2 requires a limit and leaves its length to the plant).
 DEFAULT_MAX_SHELVE = 8 * 3600.0
 
 _QUANTITIES = (
@@ -44,7 +44,7 @@ _STREAMS = ('spine_load', 'joint_torques', 'activations')
 
 @dataclass
 class StreamCounts:
-    """What became of the samples of one stream.
+    """Numbers of used and refused samples of one stream.
 
     Attributes
     ----------
@@ -165,7 +165,7 @@ class InjuryMonitor:
         lift_id : str
             '' outside a lift.
         historical : bool
-            The caller knows that this is stored data; the events carry the mark.
+            Whether the data are stored data; the events are marked then.
 
         Returns
         -------
@@ -300,7 +300,7 @@ class InjuryMonitor:
         return self.work, self.limits
 
     def _admit(self, stream: str, stamp: float, good: bool, quantities: Sequence[str]) -> bool:
-        """Count a sample and say whether it may drive the alarms of its quantities."""
+        """Count a sample; return whether it may drive the alarms of its quantities."""
         self._configured()
         finite(f'{stream}.stamp', stamp)
         counts = self.counts[stream]

@@ -29,7 +29,7 @@ class Sample:
     lift_id, detail : str
         ``detail`` names the joint or muscle the value belongs to.
     historical : bool
-        The caller knows that this is stored data.
+        Whether the data are stored data.
     """
 
     stamp: float

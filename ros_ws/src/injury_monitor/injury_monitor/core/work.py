@@ -13,7 +13,7 @@ from injury_monitor.core.validation import non_negative, positive
 
 @dataclass(frozen=True)
 class Work:
-    """What the limits and the lifting equation depend on.
+    """Person and task, on which the limits and the lifting equation depend.
 
     Attributes
     ----------
@@ -43,7 +43,7 @@ class Work:
     control_at_destination: bool = False
 
     def __post_init__(self) -> None:
-        """Refuse what the alarms cannot work with."""
+        """Check the fields that the alarms need."""
         if not self.subject:
             raise InvalidInputError('subject', self.subject, 'must not be empty')
         positive('body_mass', self.body_mass)

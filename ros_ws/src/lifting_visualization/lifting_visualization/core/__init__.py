@@ -1,3 +1,3 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""What is drawn, and where the links are; no ROS."""
+"""Shapes to draw and frames of the links; no ROS."""

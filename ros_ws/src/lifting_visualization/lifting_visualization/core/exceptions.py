@@ -12,7 +12,7 @@ class LiftingVisualizationError(LiftingError, ValueError):
 
 
 class PictureError(LiftingVisualizationError):
-    """Data that cannot be drawn; says which and why."""
+    """Data that cannot be drawn; the message names the data and the reason."""
 
 
 class DataFileError(LiftingVisualizationError):

@@ -32,7 +32,7 @@ class Ghost:
     box_mass : float
         [kg].
     pause : float
-        How long the last posture is held before the lift begins again [s].
+        Time for which the last posture stays before the lift begins again [s].
     """
 
     def __init__(self, motion: BodyMotion, box_mass: float, pause: float) -> None:

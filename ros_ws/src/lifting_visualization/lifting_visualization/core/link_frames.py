@@ -3,7 +3,7 @@
 """Places of a person's links in their parents, as /tf has them, from the joint coordinates.
 
 The links are those of the URDF (`human_model.urdf`): one per coordinate, so no chain has to be
-multiplied. What robot_state_publisher computes from URDF and joint states is the same.
+multiplied. robot_state_publisher computes the same frames from URDF and joint states.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""What can be drawn: lines, balls, an arrow, a box, a text; positions in the laboratory frame."""
+"""Shapes: lines, balls, an arrow, a box, a text; positions in the laboratory frame."""
 
 from __future__ import annotations
 

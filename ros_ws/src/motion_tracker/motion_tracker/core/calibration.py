@@ -95,7 +95,7 @@ class StaticCalibration:
     joint_centres : mapping of str to ndarray (3,)
         World [m].
     statements : tuple of str
-        What was measured and what was assumed, for the report.
+        Measured and assumed quantities, for the report.
     """
 
     calibration: Calibration

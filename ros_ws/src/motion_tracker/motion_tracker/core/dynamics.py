@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the motion of the body needs from outside."""
+"""External force that the motion of the body requires."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from human_model.typing import Array
 
 
 def needed_force(skeleton: Skeleton, q: Array, qd: Array, qdd: Array) -> Array:
-    """Sum of the outer forces [N] that carry and accelerate the body, world axes.
+    """Return the sum of the external forces [N] that carry and accelerate the body, world axes.
 
     The mass of each segment times (acceleration of its centre of mass - gravity).
 

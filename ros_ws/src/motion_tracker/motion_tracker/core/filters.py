@@ -5,7 +5,7 @@
 The thesis filters motion at 6 Hz and plates at 25 Hz (section 3.4) without naming order or number
 of passes. Here both filters are of fourth order in effect and have their -3 dB point at the named
 cutoff: offline a second-order filter runs forward and backward, with its own cutoff raised so
-that the two passes together have -3 dB where asked (Robertson & Dowling 2003; Winter 2009,
+that the two passes together have -3 dB at the cutoff (Robertson & Dowling 2003; Winter 2009,
 section 2.2.4.4); live one causal fourth-order filter runs, whose delay is known and stated.
 """
 
@@ -142,7 +142,7 @@ def _first_order_hold(a: Array, b: Array, step: float) -> tuple[Array, Array, Ar
 
 
 class CausalFilter:
-    """Causal fourth-order Butterworth low-pass that also gives the first two derivatives.
+    """Causal fourth-order Butterworth low-pass with the first two derivatives.
 
     The analogue filter is kept in the form whose states are the output and its derivatives, so
     value, velocity and acceleration come from one filter and share one delay: no difference
@@ -188,17 +188,17 @@ class CausalFilter:
         self._state: Array | None = None
 
     def reset(self) -> None:
-        """Forget the past; the next sample is taken as having been there for ever."""
+        """Reset to the steady state of the next sample."""
         self._state = None
 
     def step(self, sample: npt.ArrayLike) -> tuple[Array, Array, Array]:
-        """Take one sample (channels,), give value, first and second derivative.
+        """Filter one sample (channels,); return value, first and second derivative.
 
         Raises
         ------
         FilterError
-            If the sample has the wrong length or is not finite: the caller decides what to do
-            with a gap, the filter's memory is never spoiled by NaN.
+            If the sample has the wrong length or is not finite. The state of the filter does not
+            change then; the caller handles gaps.
         """
         u = np.asarray(sample, dtype=np.float64)
         if u.shape != (self.channels,):
@@ -207,7 +207,7 @@ class CausalFilter:
         return value, first, second
 
     def values(self, samples: npt.ArrayLike) -> Array:
-        """Take samples (n, channels) one after the other, give their values (n, channels).
+        """Filter samples (n, channels) in their order; return their values (n, channels).
 
         Raises
         ------

@@ -7,7 +7,7 @@ Minimises over q, lower <= q <= upper,
     sum_i w_i |p_i(q) - x_i|^2 + sum_j v_j (q_j - r_j)^2 + sum_k c_k ((1 - s_k) q_a - s_k q_b)^2
 
 with marker positions p, measured positions x, prior r and a share s that the lower of two joints
-takes of their sum. Coordinates at a bound whose gradient points outward are held there
+takes of their sum. Coordinates at a bound whose gradient points outward stay there
 (Bertsekas 1982, projected Newton); the others take a Levenberg-Marquardt step, which is cut at
 the bounds and accepted only if the objective falls. Everything is summed in a fixed order, so
 equal input gives equal bits.

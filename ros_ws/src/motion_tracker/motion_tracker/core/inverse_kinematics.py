@@ -2,15 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Joint coordinates from markers: weighted least squares on the 40-DOF skeleton.
 
-What markers cannot tell is settled by weak priors, whose weights are small against the markers'
-curvature (a marker 0.1 m off the axis counts 0.01 m^2 per unit weight):
+Weak priors determine the coordinates that the markers do not determine. Their weights are small
+against the curvature of the marker terms (0.01 m^2 per unit weight, 0.1 m off the axis):
 
 - every coordinate but those of the pelvis' place is drawn to the neutral posture;
 - the two spine joints are drawn to share their sum as the lumbar rhythm does
   (``data/spine_prior.csv``): weakly when the lumbar segment carries a marker; firmly when not,
   because then only the sum is seen and its split would follow errors of the trunk's lengths;
-- a coordinate that is seen by the full marker set but by no marker of this frame is held at
-  its previous value, and the frame says so.
+- a coordinate that the full marker set determines, but not the markers of this frame, keeps its
+  previous value, and the status of the frame is not OK.
 """
 
 from collections.abc import Mapping
@@ -293,7 +293,7 @@ class InverseKinematics:
     def _robust(
         self, q: Array, target: Array, weight: Array, last: Array | None, obs: Observed
     ) -> tuple[Array, Array, Array, tuple[str, ...], str]:
-        """Refit without the markers that do not fit; say which of them look exchanged."""
+        """Refit without the markers that do not fit; also describe those that look exchanged."""
         scale = self.settings.rms_residual
         start = q if last is None else last
         trust = weight
@@ -373,7 +373,7 @@ class InverseKinematics:
             blind = sorted(set(self.model.segments) - seen)
             words += [f'no marker seen on {", ".join(blind)}'] if blind else []
         if obs.names:
-            words.append(f'{", ".join(obs.names)} not seen: held at the previous value')
+            words.append(f'{", ".join(obs.names)} not observed: kept at the previous value')
         if words:
             return SolveStatus.TRACKER_MARKERS_MISSING, '; '.join(words)
         return SolveStatus.OK, f'left out: {", ".join(rejected)}' if rejected else ''

@@ -10,7 +10,7 @@ smoothed velocity, (2) waits until the rise and its end are certain, and (3) goe
 estimates the instant itself from the raw samples: where there was rest before (or is rest after)
 by the change point from a constant to a polynomial, where the motion turned without rest by the
 zero of the smoothed velocity. Smoothing looks a fixed time ahead, so the events are the same live
-and offline; live they are only reported later, and say how much.
+and offline; live events are reported later, with their delay.
 """
 
 from dataclasses import dataclass
@@ -52,7 +52,7 @@ class LiftEventSettings:
     rest_speed : float
         Vertical speed below which the box counts as at rest [m/s].
     rest_time : float
-        Time at rest that tells a rest from a turning point [s].
+        Shortest time at rest; a shorter one is a turning point [s].
     settle_time : float
         Time without further rise after which a maximum is certain [s].
     drop : float
@@ -105,7 +105,7 @@ class LiftEvent:
 
 
 class LiftEventDetector:
-    """Streaming detector; feed it heights in the order of time.
+    """Streaming detector of lifts; heights are pushed in the order of time.
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ class LiftEventDetector:
         return self._rising
 
     def push(self, time: float, height: float, body: float = np.nan) -> list[LiftEvent]:
-        """Take one sample; give the events that became certain.
+        """Take one sample; return the events that became certain.
 
         Parameters
         ----------

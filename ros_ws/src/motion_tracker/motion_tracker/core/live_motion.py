@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""The live sample of one marker frame: everything at the instant its filters are behind.
+"""The live sample of one marker frame; all its parts belong to one instant.
 
 The instant is the stamp of the frame minus the delay of the motion filter; the plates, whose
 filter is faster, are read that much earlier.
@@ -30,7 +30,7 @@ HANDS = slice(POINTS.index('hand_r'), POINTS.index('hand_l') + 1)
 
 
 class LiveMotion:
-    """Causal filters and all that hangs on them, for one recording.
+    """Causal filters of one recording, and the live samples computed from them.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ class LiveMotion:
     plates, wrenches
         Geometry, and streams of force and moment, by side.
     hand_force, status
-        Of the recording; they learn from each sample.
+        Of the recording; each sample updates them.
     counts
         Where lost frames are counted.
     """
@@ -86,7 +86,7 @@ class LiveMotion:
         lifting: bool,
         end_known: float | None,
     ) -> tuple[TrackedFrame, list[Notice]]:
-        """Sample that a marker frame completes, and what is to be said of the masses.
+        """Return the sample that a marker frame completes, and notices about the masses.
 
         Parameters
         ----------
@@ -193,7 +193,7 @@ class LiveMotion:
     ) -> dict[str, Array]:
         """Hand forces (1, 2, 3) [N] and box position (1, 3) [m] of the live sample.
 
-        The bias of `missing` is learnt from samples of settled filters only.
+        Only samples of settled filters update the bias of `missing`.
         """
         position, speed, acceleration = box
         since = None if end_known is None else time - end_known

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Whether a live sample is good data: what is known against it, and the status it gets."""
+"""Status of live samples: settling filters and masses in doubt."""
 
 import numpy as np
 
@@ -37,7 +37,7 @@ class LiveStatus:
     def weigh(
         self, stamp: float, vertical: float, need: float, carried_mass: float | None, rate: float
     ) -> MassCheck | None:
-        """Take one sample for the `MassWatch`; return the check when its verdict is new."""
+        """Take one sample for the `MassWatch`; return the check when its result is new."""
         if self.settling(stamp):
             return None
         check = self._watch.push(vertical, need, carried_mass, rate)

@@ -19,7 +19,7 @@ LARGEST_POSITION = 50.0
 
 
 class MarkerFrames:
-    """Arranges marker frames; remembers names it has already complained about.
+    """Order of the markers in a frame; each unknown name is reported once.
 
     Parameters
     ----------

@@ -53,7 +53,7 @@ class MassCheck:
 
 
 class MassWatch:
-    """Waits for quiet standing, again and again, and compares the plates with the masses.
+    """Comparison of the plates with the masses in each stretch of quiet standing.
 
     Quiet is a stretch of `WINDOW` in which the force on the plates hardly changes and the body
     by its motion needs no more and no less than its weight: a slow squat can keep the force even
@@ -99,7 +99,7 @@ class MassWatch:
     def push(
         self, vertical: float, need: float, box_mass: float | None, rate: float
     ) -> MassCheck | None:
-        """Take one sample; return the check when there is a first one or its verdict changes.
+        """Take one sample; return the check when it is the first or its result changes.
 
         Parameters
         ----------

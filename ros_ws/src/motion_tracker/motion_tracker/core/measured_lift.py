@@ -68,7 +68,7 @@ class LiftBuilder:
         """Filter and combine everything between start and end [s], step by step.
 
         One step takes about a millisecond, so that live frames need not wait for a whole lift.
-        What the estimator has learnt by now is what counts, whenever the steps are taken.
+        The lift uses the state of the estimator at this call, whenever the steps are taken.
 
         Parameters
         ----------
@@ -79,11 +79,11 @@ class LiftBuilder:
         rate
             Of the marker frames [Hz].
         estimator
-            Of the hand force, with the bias learnt before the lift.
+            Of the hand force, with the bias estimated before the lift.
         support
             Height the box was lifted from [m]; None without a box.
         doubt
-            Why the masses cannot be right, with fields and values; empty if nothing says so.
+            Reason why the masses cannot be right, with fields and values; empty without doubt.
 
         Yields
         ------

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""A person who stands still on the plates: which frames, and what is missing for balance.
+"""Frames in which a person stands still on the plates, and their missing moment.
 
-In quiet standing the centre of pressure lies under the centre of mass, but for what the small
-accelerations ask. What is missing, on the same side throughout, tells of the plates' place in the
-laboratory, or of the body's mass distribution.
+In quiet standing the centre of pressure lies under the centre of mass, except for the effect of
+small accelerations. A constant missing moment shows an error in the place of the plates in the
+laboratory, or in the mass distribution of the body.
 """
 
 from collections.abc import Sequence
@@ -32,7 +32,7 @@ _CUTOFF = 6.0
 
 @dataclass(frozen=True)
 class StandingSettings:
-    """What counts as quiet standing with nothing in the hands; engineering choices.
+    """Criteria of quiet standing with empty hands; engineering choices.
 
     Attributes
     ----------
@@ -116,7 +116,7 @@ def find_quiet_standing(
     force
         Of all plates together on the person, at the same times, (n, 3) [N].
     settings
-        What counts.
+        Criteria.
 
     Raises
     ------
@@ -159,7 +159,7 @@ def missing_moment(
     rows = zip(standing.q, standing.qd, standing.qdd, force, moment, strict=True)
     for q, qd, qdd, push, turn in rows:
         wrench = np.zeros((len(skeleton.segments), 6))
-        # What the ground does to the whole body does not depend on where it takes hold.
+        # The wrench of the ground on the whole body does not depend on its point of attack.
         wrench[0] = [*push, *turn]
         tau = newton_euler(skeleton.tree, q, qd, qdd, wrench, GRAVITY)
         _, origin, axis = body_frames(skeleton.tree, q)
@@ -170,7 +170,7 @@ def missing_moment(
 
 
 def _runs(good: npt.NDArray[np.bool_]) -> list[npt.NDArray[np.int64]]:
-    """Give the indices of the pieces without gaps."""
+    """Return the indices of the pieces without gaps."""
     where = np.flatnonzero(good)
     return [run for run in np.split(where, np.flatnonzero(np.diff(where) > 1) + 1) if len(run)]
 
@@ -178,7 +178,7 @@ def _runs(good: npt.NDArray[np.bool_]) -> list[npt.NDArray[np.int64]]:
 def _still(
     skeleton: Skeleton, rate: float, q: Array, force: Array, wanted: StandingSettings
 ) -> npt.NDArray[np.bool_]:
-    """Say of each frame (n,) whether it is one of quiet standing."""
+    """Return for each frame (n,) whether it is one of quiet standing."""
     points = skeleton.point_array(q)
     trunk = points[:, POINTS.index('c7')] - points[:, POINTS.index('pelvis')]
     lean = np.arctan2(np.linalg.norm(trunk[:, :2], axis=1), trunk[:, 2])

@@ -31,7 +31,7 @@ _ROOM = 1024
 def rate_of(stamps: npt.ArrayLike, name: str) -> float:
     """Rate [Hz] of a stream by the median of its steps; a whole number if within 0.05 percent.
 
-    Stamps of this century, held as seconds in a double, have steps of 0.24 microseconds, which
+    Stamps of this century, stored as seconds in a double, have steps of 0.24 microseconds, which
     would otherwise show in the rate of a fast plate.
 
     Raises
@@ -51,8 +51,8 @@ def rate_of(stamps: npt.ArrayLike, name: str) -> float:
 class SampledStream:
     """Samples of a fixed number of channels in the order of their stamps.
 
-    The causal filter runs when it is asked for: what has come since the last time passes it in
-    one call, with the same bits as sample by sample.
+    The causal filter runs when a filtered sample is read: all new samples pass it in one call,
+    with the same bits as sample by sample.
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the tracker gives out, and its settings."""
+"""Outputs and settings of the tracker."""
 
 from dataclasses import dataclass, field
 
@@ -137,7 +137,7 @@ class MeasuredLift:
 
 @dataclass(frozen=True)
 class Notice:
-    """Something a person should know: text, and whether it is only information."""
+    """Notice to the user: text, and whether it is information only."""
 
     text: str
     information: bool = False
@@ -148,7 +148,7 @@ Output = TrackedFrame | DetectedEvent | MeasuredLift | Notice
 
 @dataclass(frozen=True, eq=False)
 class FrameRecord:
-    """What is kept of one marker frame for the lift it may belong to."""
+    """Stored result of one marker frame, for the lift that it may belong to."""
 
     stamp: float
     solution: IKSolution

@@ -27,7 +27,7 @@ def warm_up() -> None:
         tracker.push_box(stamp, (0.5, 0.0, 0.15))
         tracker.push_markers(stamp, tracker.model.names, positions)
     tracker.flush()
-    # What comes with a lift.
+    # Functions that only a lift needs.
     ground_reaction(np.zeros((2, 3)), np.zeros((2, 3)), PlateGeometry('plate'), 20.0)
     times = np.arange(100) / 100.0
     detect_lifts(times, 0.15 + np.clip(times - 0.5, 0.0, 0.3))
