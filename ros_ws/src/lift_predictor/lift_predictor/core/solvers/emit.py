@@ -10,6 +10,7 @@ from typing import Any, Final
 
 import casadi as ca
 
+from lift_predictor.core.solvers.constants import c_macros
 from lift_predictor.core.solvers.node_function import DerivedFunction
 
 CHUNK: Final = 4000
@@ -41,8 +42,8 @@ ARGUMENTS: Final = {
 
 
 def library_source(functions: Sequence[DerivedFunction]) -> str:
-    """C source of all functions and the table `lift_functions` of them."""
-    parts, entries = [], []
+    """C source of all functions, their table `lift_functions` and the constants of the method."""
+    parts, entries = [c_macros()], []
     for function in functions:
         names = {}
         # Functions too large to be written out bring their own code (sweeps.py).

@@ -17,24 +17,31 @@ from dataclasses import dataclass
 import numpy as np
 
 from human_model.typing import Array
+from lift_predictor.core.solvers.constants import (
+    ACCEPTABLE_FACTOR,
+    KAPPA_EPSILON,
+    KAPPA_MU,
+    KAPPA_SIGMA,
+    KAPPA_SOC,
+    LARGEST_FIRST_MULTIPLIER,
+    MAX_RESTORATIONS,
+    MULTIPLIER_SCALE,
+    RESTORED_FACTOR,
+    RESTORED_PUSH,
+    RESTORED_SLACK_PUSH,
+    SHORT_STEP,
+    SHORT_STEPS,
+    SOC_LIMIT,
+    TAU_LEAST,
+    THETA_MU,
+    TINY,
+)
 from lift_predictor.core.solvers.line_filter import Filter
 from lift_predictor.core.solvers.newton import InertiaMemory, NewtonSystem
 from lift_predictor.core.solvers.problem import NlpProblem
 from lift_predictor.core.solvers.restoration import constraint_violation, restore
 from lift_predictor.core.solvers.scaling import ScaledNlp, ScaledPoint
 from lift_predictor.core.solvers.solution import InteriorPointOptions, Solution, Status
-
-KAPPA_EPSILON, KAPPA_MU, THETA_MU = 10.0, 0.2, 1.5
-TAU_LEAST, KAPPA_SIGMA, MULTIPLIER_SCALE = 0.99, 1e10, 100.0
-SOC_LIMIT, KAPPA_SOC = 4, 0.99
-KAPPA_D = 1e-5
-LARGEST_FIRST_MULTIPLIER = 1e3
-MAX_RESTORATIONS = 8
-SHORT_STEP, SHORT_STEPS = 0.1, 12
-"""The restoration starts after this number of successive steps that bounds cut to this length."""
-TINY = 10.0 * float(np.finfo(float).eps)
-ACCEPTABLE_FACTOR = 100.0
-"""Without further progress, an error of this many tolerances is rounding, not failure."""
 
 
 @dataclass
@@ -339,12 +346,12 @@ class _Solver:
         self.filter.add(theta, phi)
         x = self.state.v[: p.n]
         left = options.max_iterations - self.iterations
-        restored = restore(p, x, 0.1 * options.infeasible_violation, left, self._late)
+        restored = restore(p, x, RESTORED_FACTOR * options.infeasible_violation, left, self._late)
         self.iterations += restored.iterations
-        x = self._inside(restored.x, slice(0, p.n), 1e-8)
+        x = self._inside(restored.x, slice(0, p.n), RESTORED_PUSH)
         self.point = p.linearise(x)
         largest = float(np.abs(constraint_violation(p, self.point.g)).max())
-        s = self._inside(self.point.g[p.unequal], slice(p.n, None), 1e-4)
+        s = self._inside(self.point.g[p.unequal], slice(p.n, None), RESTORED_SLACK_PUSH)
         self.state = self._multipliers(np.concatenate((x, s)))
         if restored.minimum and largest > options.infeasible_violation:
             return Status.INFEASIBLE

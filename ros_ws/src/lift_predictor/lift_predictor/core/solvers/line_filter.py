@@ -4,11 +4,17 @@
 
 from __future__ import annotations
 
-GAMMA_THETA, GAMMA_PHI = 1e-5, 1e-8
-DELTA, S_THETA, S_PHI, ETA_PHI = 1.0, 1.1, 2.3, 1e-8
-LARGEST_FACTOR, SMALL_FACTOR = 1e4, 1e-4
-ROUNDING = 1e-14
-"""Relative error of the barrier function that counts as equal."""
+from lift_predictor.core.solvers.constants import (
+    ETA_PHI,
+    GAMMA_ALPHA,
+    GAMMA_PHI,
+    GAMMA_THETA,
+    LARGEST_FACTOR,
+    ROUNDING,
+    S_PHI,
+    S_THETA,
+    SMALL_FACTOR,
+)
 
 
 class Filter:
@@ -57,7 +63,7 @@ class Filter:
         if not self.accepts(*trial):
             return False, False
         rounding = ROUNDING * max(1.0, abs(phi))
-        switching = slope < 0.0 and step * (-slope) ** S_PHI > DELTA * theta**S_THETA
+        switching = slope < 0.0 and step * (-slope) ** S_PHI > theta**S_THETA
         armijo = trial[1] <= phi + ETA_PHI * step * slope + rounding
         if theta <= self._small and switching:
             return armijo, False
@@ -73,5 +79,5 @@ class Filter:
         if slope < 0.0:
             bound = min(bound, GAMMA_PHI * theta / -slope)
             if theta <= self._small:
-                bound = min(bound, DELTA * theta**S_THETA / (-slope) ** S_PHI)
-        return 0.05 * bound
+                bound = min(bound, theta**S_THETA / (-slope) ** S_PHI)
+        return GAMMA_ALPHA * bound

@@ -9,16 +9,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from human_model.typing import Array
-
-FIRST_SHIFT, LEAST_SHIFT, LARGEST_SHIFT = 1e-4, 1e-20, 1e40
-FIRST_GROWTH, GROWTH, DECAY = 100.0, 8.0, 1.0 / 3.0
-"""Multiples of the identity tried (Waechter and Biegler 2006, algorithm IC)."""
-EQUALITY_SHIFT = 1e-8
-"""Regularisation of the Schur complement of dependent equality constraints (ibid.)."""
-CONVEXIFICATION = 10.0
-"""Weight of the outer products of the equality constraints' gradients, relative to the matrix. The
-step is unchanged, as the change of the constraints is prescribed, but a matrix that is positive
-definite on their null space becomes positive definite."""
+from lift_predictor.core.solvers.constants import (
+    CONVEXIFICATION,
+    EQUALITY_SHIFT,
+    FIRST_GROWTH,
+    FIRST_SHIFT,
+    LARGEST_SHIFT,
+    LEAST_SHIFT,
+    SHIFT_DECAY,
+    SHIFT_GROWTH,
+)
 
 
 @dataclass
@@ -82,8 +82,8 @@ def _factorise(matrix: Array, memory: InertiaMemory) -> tuple[float, Array]:
     factor = cholesky(matrix)
     if factor is not None:
         return 0.0, factor
-    shift = FIRST_SHIFT if memory.last == 0.0 else max(LEAST_SHIFT, DECAY * memory.last)
-    growth = FIRST_GROWTH if memory.last == 0.0 else GROWTH
+    shift = FIRST_SHIFT if memory.last == 0.0 else max(LEAST_SHIFT, memory.last / SHIFT_DECAY)
+    growth = FIRST_GROWTH if memory.last == 0.0 else SHIFT_GROWTH
     unit = np.eye(len(matrix))
     while shift < LARGEST_SHIFT:
         factor = cholesky(matrix + shift * unit)

@@ -10,18 +10,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from human_model.typing import Array
+from lift_predictor.core.solvers.constants import (
+    DAMPING_DECAY,
+    DAMPING_GROWTH,
+    FIRST_DAMPING,
+    LARGEST_DAMPING,
+    LEAST_GRADIENT_RATIO,
+    STALLED,
+    STALLED_STEPS,
+    STATIONARY,
+)
 from lift_predictor.core.solvers.newton import cholesky, cholesky_solve
 from lift_predictor.core.solvers.scaling import ScaledNlp
-
-FIRST_DAMPING, DAMPING_GROWTH, DAMPING_DECAY = 1e-6, 10.0, 0.1
-LARGEST_DAMPING = 1e12
-STATIONARY = 1e-8
-"""Projected gradient, relative to the violation, at which a minimum is reached."""
-LEAST_GRADIENT_RATIO = 0.1
-"""To the first order no change of the variables by 1 takes more than this share of the squared
-violation: what is left is a minimum that is not zero."""
-STALLED, STALLED_STEPS = 1e-3, 10
-"""Relative decrease of the squared violation that counts as none, so many times in succession."""
 
 
 @dataclass(frozen=True)

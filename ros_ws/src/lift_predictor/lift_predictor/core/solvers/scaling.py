@@ -7,11 +7,10 @@ from __future__ import annotations
 import numpy as np
 
 from human_model.typing import Array
+from lift_predictor.core.solvers.constants import (
+    BOUND_RELAXATION,
+)
 from lift_predictor.core.solvers.problem import Linearisation, NlpProblem
-
-BOUND_RELAXATION = 1e-8
-"""Relative relaxation of the bounds of constraints, as IPOPT relaxes all bounds: the feasible set
-has an interior. Bounds of variables are kept: a solution can be used without a correction."""
 
 
 class ScaledPoint:

@@ -19,7 +19,7 @@ static double violation_of(const struct solver *s, const double *g, double *out)
 // Reduce half the squared violation of the constraints; x in v. 1 if it has a minimum there.
 static int restore(struct solver *s, double goal, int limit) {
     int n = s->n, stalled = 0, *held = (int *)s->eq_work;
-    double damping = 1e-6, *violation = s->residual, *x = s->v, *gradient = s->free_work;
+    double damping = FIRST_DAMPING, *violation = s->residual, *x = s->v, *gradient = s->free_work;
     scaled_values(s, x, s->g);
     double value = violation_of(s, s->g, violation);
     while (limit-- > 0) {
@@ -33,7 +33,7 @@ static int restore(struct solver *s, double goal, int limit) {
                       (x[i] >= s->high[i] && gradient[i] < 0.0);
             if (!held[i]) steep = larger(steep, fabs(gradient[i])), sum += fabs(gradient[i]);
         }
-        if (steep <= 1e-8 * larger(1.0, most) || sum <= 0.1 * value) return 1;
+        if (steep <= STATIONARY * larger(1.0, most) || sum <= LEAST_GRADIENT_RATIO * value) return 1;
         s->iterations++;
         for (int r = 0; r < s->m; r++)
             s->row_work[r] = violation[r] != 0.0 ? s->g_scale[r] * s->g_scale[r] : 0.0;
@@ -48,8 +48,8 @@ static int restore(struct solver *s, double goal, int limit) {
             size = larger(size, fabs(s->matrix[(size_t)i * n + i]));
         }
         double after = value;
-        for (;; damping *= 10.0) {
-            if (damping > 1e12) return 1;
+        for (;; damping *= DAMPING_GROWTH) {
+            if (damping > LARGEST_DAMPING) return 1;
             if (!cholesky(s->matrix, damping * size, s->factor, n)) continue;
             for (int i = 0; i < n; i++) s->free_work2[i] = held[i] ? 0.0 : -gradient[i];
             back_substitute(s->factor, s->free_work2, n);
@@ -59,12 +59,12 @@ static int restore(struct solver *s, double goal, int limit) {
             after = violation_of(s, s->trial_rows, s->row_work2);
             if (after < value) break;
         }
-        stalled = value - after <= 1e-3 * value ? stalled + 1 : 0;
+        stalled = value - after <= STALLED * value ? stalled + 1 : 0;
         memcpy(x, s->trial_v, n * sizeof(double));
         memcpy(violation, s->row_work2, s->m * sizeof(double));
         value = after;
-        damping = larger(0.1 * damping, 1e-6);
-        if (stalled == 10) return 1;
+        damping = larger(DAMPING_DECAY * damping, FIRST_DAMPING);
+        if (stalled == STALLED_STEPS) return 1;
     }
     return 0;
 }
@@ -72,17 +72,17 @@ static int restore(struct solver *s, double goal, int limit) {
 // -1: go on.
 static int leave_dead_end(struct solver *s) {
     struct errors e = measure(s);
-    if (scaled_error(s, &e, 0.0) <= 100.0 * s->set.tolerance) return OPTIMAL;
+    if (scaled_error(s, &e, 0.0) <= ACCEPTABLE_FACTOR * s->set.tolerance) return OPTIMAL;
     double theta = rows_residual(s, s->g, s->v, s->residual);
     if (theta <= s->set.tolerance || ++s->restorations > MAX_RESTORATIONS) return STUCK;
     filter_add(s, theta, barrier_objective(s, s->objective, s->v));
-    int minimum = restore(s, 0.1 * s->set.infeasible_violation,
+    int minimum = restore(s, RESTORED_FACTOR * s->set.infeasible_violation,
                           s->set.max_iterations - s->iterations);
-    for (int i = 0; i < s->n; i++) s->v[i] = inside(s->v[i], s->low[i], s->high[i], 1e-8);
+    for (int i = 0; i < s->n; i++) s->v[i] = inside(s->v[i], s->low[i], s->high[i], RESTORED_PUSH);
     linearise(s, s->v);
     violation_of(s, s->g, s->residual);
     double most = largest(s->residual, s->m);
-    slacks_from_rows(s, 1e-4);
+    slacks_from_rows(s, RESTORED_SLACK_PUSH);
     first_multipliers(s);
     if (minimum && most > s->set.infeasible_violation) return INFEASIBLE;
     return s->iterations >= s->set.max_iterations ? ITERATION_LIMIT : -1;
@@ -96,8 +96,8 @@ static int iterate(struct solver *s) {
         struct errors e = measure(s);
         if (scaled_error(s, &e, 0.0) <= s->set.tolerance) return OPTIMAL;
         double least = 0.1 * s->set.tolerance;
-        while (s->mu > least && scaled_error(s, &e, s->mu) <= 10.0 * s->mu) {
-            s->mu = larger(least, smaller(0.2 * s->mu, pow(s->mu, 1.5)));
+        while (s->mu > least && scaled_error(s, &e, s->mu) <= KAPPA_EPSILON * s->mu) {
+            s->mu = larger(least, smaller(KAPPA_MU * s->mu, pow(s->mu, THETA_MU)));
             s->n_filter = 0;
         }
         if (s->iterations >= s->set.max_iterations) return ITERATION_LIMIT;
@@ -106,7 +106,7 @@ static int iterate(struct solver *s) {
         s->iterations++;
         if (!factorise(s)) return STUCK;
         newton_step(s, s->residual);
-        if (!line_search(s) || (s->n_short == 12 && s->set.tolerance < e.primal)) {
+        if (!line_search(s) || (s->n_short == SHORT_STEPS && s->set.tolerance < e.primal)) {
             s->n_short = 0;
             int status = leave_dead_end(s);
             if (status >= 0) return status;
@@ -130,8 +130,8 @@ static void start(struct solver *s, const double *x0, const double *y, const dou
         s->target[k] *= s->g_scale[s->equal[k]];
     }
     for (int i = n; i < s->n_v; i++) {
-        s->low[i] -= 1e-8 * larger(1.0, fabs(s->low[i]));
-        s->high[i] += 1e-8 * larger(1.0, fabs(s->high[i]));
+        s->low[i] -= BOUND_RELAXATION * larger(1.0, fabs(s->low[i]));
+        s->high[i] += BOUND_RELAXATION * larger(1.0, fabs(s->high[i]));
     }
     for (int i = 0; i < n; i++)
         s->v[i] = inside(x0[s->free[i]], s->low[i], s->high[i], set->bound_push);
@@ -149,7 +149,8 @@ static void start(struct solver *s, const double *x0, const double *y, const dou
         }
     }
     double theta = rows_residual(s, s->g, s->v, s->residual);
-    s->theta_largest = 1e4 * larger(1.0, theta), s->theta_small = 1e-4 * larger(1.0, theta);
+    s->theta_largest = LARGEST_FACTOR * larger(1.0, theta);
+    s->theta_small = SMALL_FACTOR * larger(1.0, theta);
 }
 
 // Unscaled result; see Solution in solution.py.

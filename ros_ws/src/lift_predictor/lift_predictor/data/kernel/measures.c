@@ -68,10 +68,11 @@ static double scaled_error(const struct solver *s, const struct errors *e, doubl
     double complementarity =
         e->bounds ? larger(e->high_product - mu, mu - e->low_product) : 0.0;
     int count = s->m + e->bounds;
-    double s_d = larger(100.0, (e->sum_y + e->sum_z) / (count ? count : 1));
-    double s_c = larger(100.0, e->sum_z / (e->bounds ? e->bounds : 1));
+    double s_d = larger(MULTIPLIER_SCALE, (e->sum_y + e->sum_z) / (count ? count : 1));
+    double s_c = larger(MULTIPLIER_SCALE, e->sum_z / (e->bounds ? e->bounds : 1));
     double most = e->primal;
-    double dual = 100.0 * e->dual / s_d, product = 100.0 * complementarity / s_c;
+    double dual = MULTIPLIER_SCALE * e->dual / s_d;
+    double product = MULTIPLIER_SCALE * complementarity / s_c;
     if (!(dual <= most)) most = dual;
     if (!(product <= most)) most = product;
     return most;
@@ -87,33 +88,35 @@ static int filter_accepts(const struct solver *s, double theta, double phi) {
 }
 
 static void filter_add(struct solver *s, double theta, double phi) {
-    if (s->n_filter == FILTER_ROOM) {  // forget the oldest
-        memmove(s->filter_theta, s->filter_theta + 1, (FILTER_ROOM - 1) * sizeof(double));
-        memmove(s->filter_phi, s->filter_phi + 1, (FILTER_ROOM - 1) * sizeof(double));
+    if (s->n_filter == FILTER_CAPACITY) {  // forget the oldest
+        memmove(s->filter_theta, s->filter_theta + 1, (FILTER_CAPACITY - 1) * sizeof(double));
+        memmove(s->filter_phi, s->filter_phi + 1, (FILTER_CAPACITY - 1) * sizeof(double));
         s->n_filter--;
     }
-    s->filter_theta[s->n_filter] = (1.0 - 1e-5) * theta;
-    s->filter_phi[s->n_filter++] = phi - 1e-8 * theta;
+    s->filter_theta[s->n_filter] = (1.0 - GAMMA_THETA) * theta;
+    s->filter_phi[s->n_filter++] = phi - GAMMA_PHI * theta;
 }
 
 static int judge(const struct solver *s, double theta, double phi, double trial_theta,
                  double trial_phi, double slope, double step, int *enter) {
     *enter = 0;
     if (!filter_accepts(s, trial_theta, trial_phi)) return 0;
-    double rounding = 1e-14 * larger(1.0, fabs(phi));
-    int switching = slope < 0.0 && step * pow(-slope, 2.3) > pow(theta, 1.1);
-    int armijo = trial_phi <= phi + 1e-8 * step * slope + rounding;
+    double rounding = ROUNDING * larger(1.0, fabs(phi));
+    int switching = slope < 0.0 && step * pow(-slope, S_PHI) > pow(theta, S_THETA);
+    int armijo = trial_phi <= phi + ETA_PHI * step * slope + rounding;
     if (theta <= s->theta_small && switching) return armijo;
-    int better = trial_theta <= (1.0 - 1e-5) * theta || trial_phi <= phi - 1e-8 * theta + rounding;
+    int better = trial_theta <= (1.0 - GAMMA_THETA) * theta ||
+                 trial_phi <= phi - GAMMA_PHI * theta + rounding;
     *enter = better && !(switching && armijo);
     return better;
 }
 
 static double least_step(const struct solver *s, double theta, double slope) {
-    double bound = 1e-5;
+    double bound = GAMMA_THETA;
     if (slope < 0.0) {
-        bound = smaller(bound, 1e-8 * theta / -slope);
-        if (theta <= s->theta_small) bound = smaller(bound, pow(theta, 1.1) / pow(-slope, 2.3));
+        bound = smaller(bound, GAMMA_PHI * theta / -slope);
+        if (theta <= s->theta_small)
+            bound = smaller(bound, pow(theta, S_THETA) / pow(-slope, S_PHI));
     }
-    return 0.05 * bound;
+    return GAMMA_ALPHA * bound;
 }

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The lift monitor authors
 // SPDX-License-Identifier: Apache-2.0
 // The interior-point method of core/solvers/interior_point.py, step for step, without Python
-// between the steps. That module is the readable reference (and says where the constants come
-// from); tests compare the two.
+// between the steps. That module is the readable reference; constants.py has the constants of
+// both; tests compare the two.
 
 #include <float.h>
 #include <time.h>
 
 enum { OPTIMAL, INFEASIBLE, ITERATION_LIMIT, TIME_LIMIT, STUCK, NOT_FINITE, CANCELLED };
-enum { FILTER_ROOM = 512, SOC_LIMIT = 4, MAX_RESTORATIONS = 8 };
+enum { FILTER_CAPACITY = 512 };
 
 struct settings {
     double tolerance, infeasible_violation, time_limit, barrier, bound_push, gradient_limit;
@@ -31,7 +31,7 @@ struct solver {
     double objective_scale, *g_scale, *low, *high, *target;
     double mu, last_shift, start_time;
     int iterations, restorations, n_filter, n_short;
-    double filter_theta[FILTER_ROOM], filter_phi[FILTER_ROOM], theta_largest, theta_small;
+    double filter_theta[FILTER_CAPACITY], filter_phi[FILTER_CAPACITY], theta_largest, theta_small;
     // Iterate, step, second step (correction), derivatives at the iterate.
     double *v, *y, *zl, *zu, *dv, *dy, *dzl, *dzu;
     double objective, *g, *gradient, *jacobian, *equality;

@@ -27,8 +27,8 @@ static void slacks_from_rows(struct solver *s, double push) {
 static void first_multipliers(struct solver *s) {
     memset(s->y, 0, s->m * sizeof(double));
     for (int i = 0; i < s->n_v; i++) {
-        s->zl[i] = smaller(s->mu / (s->v[i] - s->low[i]), 1e3);
-        s->zu[i] = smaller(s->mu / (s->high[i] - s->v[i]), 1e3);
+        s->zl[i] = smaller(s->mu / (s->v[i] - s->low[i]), LARGEST_FIRST_MULTIPLIER);
+        s->zu[i] = smaller(s->mu / (s->high[i] - s->v[i]), LARGEST_FIRST_MULTIPLIER);
         if (i >= s->n) s->y[s->unequal[i - s->n]] = s->zu[i] - s->zl[i];
     }
 }
@@ -50,7 +50,7 @@ static int factorise(struct solver *s) {
     }
     if (!isfinite(trace)) return 0;
     squares = dot(s->equality, s->equality, s->n_equal * n);
-    s->convexify = squares > 0.0 ? 10.0 * larger(trace / n, 1.0) * s->n_equal / squares : 0.0;
+    s->convexify = squares > 0.0 ? CONVEXIFICATION * larger(trace / n, 1.0) * s->n_equal / squares : 0.0;
     if (s->convexify > 0.0)
         for (int k = 0; k < s->n_equal; k++) {
             const double *row = s->equality + (size_t)k * n;
@@ -61,11 +61,12 @@ static int factorise(struct solver *s) {
             }
         }
     if (!cholesky(s->matrix, 0.0, s->factor, n)) {
-        double shift = s->last_shift == 0.0 ? 1e-4 : larger(1e-20, s->last_shift / 3.0);
-        double growth = s->last_shift == 0.0 ? 100.0 : 8.0;
+        int first = s->last_shift == 0.0;
+        double shift = first ? FIRST_SHIFT : larger(LEAST_SHIFT, s->last_shift / SHIFT_DECAY);
+        double growth = first ? FIRST_GROWTH : SHIFT_GROWTH;
         while (!cholesky(s->matrix, shift, s->factor, n)) {
             shift *= growth;
-            if (!(shift < 1e40)) return 0;
+            if (!(shift < LARGEST_SHIFT)) return 0;
         }
         s->last_shift = shift;
     }
@@ -81,7 +82,7 @@ static int factorise(struct solver *s) {
     for (int k = 0; k < q; k++) most = larger(most, fabs(s->eq_work[(size_t)k * q + k]));
     double shift = 0.0;
     while (!cholesky(s->eq_work, shift, s->schur, q)) {
-        shift = shift == 0.0 ? 1e-8 * most : 10.0 * shift;
+        shift = shift == 0.0 ? EQUALITY_SHIFT * most : 10.0 * shift;
         if (!isfinite(shift)) return 0;
     }
     return 1;
@@ -127,7 +128,7 @@ static void newton_step(struct solver *s, const double *residual) {
     }
 }
 
-static double boundary(const struct solver *s) { return larger(0.99, 1.0 - s->mu); }
+static double boundary(const struct solver *s) { return larger(TAU_LEAST, 1.0 - s->mu); }
 
 static double longest_step(const struct solver *s) {
     double tau = boundary(s), most = tau;
@@ -154,8 +155,8 @@ static void take(struct solver *s, double alpha) {
         s->v[i] = s->trial_v[i];
         s->zl[i] += dual * s->dzl[i];
         s->zu[i] += dual * s->dzu[i];
-        s->zl[i] = smaller(larger(s->zl[i], s->mu / (1e10 * low)), 1e10 * s->mu / low);
-        s->zu[i] = smaller(larger(s->zu[i], s->mu / (1e10 * high)), 1e10 * s->mu / high);
+        s->zl[i] = smaller(larger(s->zl[i], s->mu / (KAPPA_SIGMA * low)), KAPPA_SIGMA * s->mu / low);
+        s->zu[i] = smaller(larger(s->zu[i], s->mu / (KAPPA_SIGMA * high)), KAPPA_SIGMA * s->mu / high);
     }
     for (int r = 0; r < s->m; r++) s->y[r] += alpha * s->dy[r];
     linearise(s, s->v);
@@ -177,7 +178,7 @@ static int correct(struct solver *s, double alpha, double theta, double phi, dou
         double after = rows_residual(s, s->trial_rows, s->trial_v, s->row_work2);
         if (judge(s, theta, phi, after, barrier_objective(s, f, s->trial_v), slope, alpha, enter))
             return 1;
-        if (!(after <= 0.99 * before)) return 0;
+        if (!(after <= KAPPA_SOC * before)) return 0;
         before = after, alpha = length;
     }
     return 0;
@@ -190,10 +191,10 @@ static int line_search(struct solver *s) {
     for (int i = 0; i < s->n_v; i++) {
         slope += s->barrier[i] * s->dv[i];
         if (i < s->n) slope += s->gradient[i] * s->dv[i];
-        if (!(fabs(s->dv[i]) <= 10.0 * DBL_EPSILON * (1.0 + fabs(s->v[i])))) tiny = 0;
+        if (!(fabs(s->dv[i]) <= TINY * (1.0 + fabs(s->v[i])))) tiny = 0;
     }
     double first = longest_step(s);
-    s->n_short = first < 0.1 ? s->n_short + 1 : 0;
+    s->n_short = first < SHORT_STEP ? s->n_short + 1 : 0;
     double least = least_step(s, theta, slope);
     if (tiny) {
         move(s, first);
