@@ -5,8 +5,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import Any, Final
+from collections.abc import Iterator, Sequence
+from typing import Any, Final, NamedTuple
 
 import casadi as ca
 
@@ -33,6 +33,9 @@ TEMPLATES: Final[dict[int, str]] = {
     ca.OP_OR: 'truth(({0} != 0.0) | ({1} != 0.0))', ca.OP_IF_ELSE_ZERO: 'v_if({0}, {1})',
 }  # fmt: skip
 """C expressions of CasADi's operations."""
+
+INPUTS: Final = ('in[{}]', 'spread(p[{}])', 'multiplier[{}]')
+"""C expressions of an element of a function's inputs."""
 
 ARGUMENTS: Final = {
     'value': 'const vec *in, const double *p',
@@ -102,24 +105,66 @@ def _function(name: str, kind: str, function: Any) -> str:
 
 
 def _statements(function: Any) -> list[str]:
-    sources = ('in[{}]', 'spread(p[{}])', 'multiplier[{}]')
     statements = []
+    for instruction in instructions(function):
+        operands = tuple(f'w[{i}]' for i in instruction.operands)
+        if instruction.output is not None:
+            statements.append(f'    out[{instruction.output[1]}] = {operands[0]};')
+            continue
+        value = instruction.constant or instruction.template.format(*operands)
+        if instruction.input is not None:
+            which, index = instruction.input
+            value = INPUTS[which].format(index)
+        statements.append(f'    w[{instruction.register}] = {value};')
+    return statements
+
+
+class Instruction(NamedTuple):
+    """One instruction of a CasADi function.
+
+    Attributes
+    ----------
+    operands : tuple of int
+        Registers that it reads.
+    register : int
+        Register that it writes; -1: none.
+    input, output : (int, int) or None
+        Number of the function's input or output, and index of the element.
+    constant : str
+        C expression of a constant.
+    template : str
+        C expression of an operation on the operands.
+    """
+
+    operands: tuple[int, ...] = ()
+    register: int = -1
+    input: tuple[int, int] | None = None
+    output: tuple[int, int] | None = None
+    constant: str = ''
+    template: str = ''
+
+
+def instructions(function: Any) -> Iterator[Instruction]:
+    """Yield the instructions of a CasADi function.
+
+    Raises
+    ------
+    NotImplementedError
+        For an operation without C code or a constant that is not finite.
+    """
     for k in range(function.n_instructions()):
         operation = function.instruction_id(k)
-        inputs, outputs = function.instruction_input(k), function.instruction_output(k)
+        read, written = function.instruction_input(k), function.instruction_output(k)
         if operation == ca.OP_OUTPUT:
-            statements.append(f'    out[{outputs[1]}] = w[{inputs[0]}];')
-            continue
-        if operation == ca.OP_INPUT:
-            value = sources[inputs[0]].format(inputs[1])
+            yield Instruction((read[0],), output=(written[0], written[1]))
+        elif operation == ca.OP_INPUT:
+            yield Instruction(register=written[0], input=(read[0], read[1]))
         elif operation == ca.OP_CONST:
             constant = float(function.instruction_constant(k))
             if not math.isfinite(constant):
                 raise NotImplementedError(f'{function.name()} holds the constant {constant}')
-            value = f'spread({constant!r})'
+            yield Instruction(register=written[0], constant=f'spread({constant!r})')
         elif operation in TEMPLATES:
-            value = TEMPLATES[operation].format(*(f'w[{i}]' for i in inputs))
+            yield Instruction(tuple(read), written[0], template=TEMPLATES[operation])
         else:
             raise NotImplementedError(f'operation {operation} of {function.name()} has no C code')
-        statements.append(f'    w[{outputs[0]}] = {value};')
-    return statements

@@ -3,7 +3,7 @@
 """Libraries of compiled node functions, loaded with ctypes: neither CasADi nor a compiler needed.
 
 Without a C compiler, or if it fails, the same functions run in CasADi's virtual machine
-(`virtual.py`): slower, same numbers, and `backend` says why.
+(`virtual_assembler.py`): slower, same numbers, and `backend` says why.
 """
 
 from __future__ import annotations

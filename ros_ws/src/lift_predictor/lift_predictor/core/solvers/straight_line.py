@@ -10,17 +10,13 @@ large ones; values that cross a cut are kept in a work array, all others are loc
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any, Final
 
-import casadi as ca
-
-from lift_predictor.core.solvers.emit import TEMPLATES
+from lift_predictor.core.solvers.emit import INPUTS, instructions
 
 CHUNK: Final = 400
 """Statements of one C function at most."""
-FIXED: Final = ('in[{}]', 'spread(p[{}])', 'multiplier[{}]')
 ARGUMENTS: Final = (
     'const vec *restrict in, const double *restrict p, const vec *restrict multiplier, '
     'const vec *restrict seed, {}vec *restrict base, vec *restrict out'
@@ -78,32 +74,22 @@ def _read(function: Any, n_fixed: int) -> tuple[list[_Value], dict[tuple[int, in
     values: list[_Value] = []
     register: dict[int, int] = {}
     outputs: dict[tuple[int, int], int] = {}
-    for k in range(function.n_instructions()):
-        operation = function.instruction_id(k)
-        inputs, places = function.instruction_input(k), function.instruction_output(k)
-        if operation == ca.OP_OUTPUT:
-            outputs[places[0], places[1]] = register[inputs[0]]
+    for instruction in instructions(function):
+        if instruction.output is not None:
+            outputs[instruction.output] = register[instruction.operands[0]]
             continue
-        if operation == ca.OP_INPUT:
-            which, index = inputs
+        operands = tuple(register[i] for i in instruction.operands)
+        value = _Value(BASE, instruction.constant, instruction.template, operands)
+        if instruction.input is not None:
+            which, index = instruction.input
             fixed = which < n_fixed
-            text = FIXED[which].format(index) if fixed else f'seed[{index}]'
-            value = _Value(BASE if fixed else which - n_fixed, text)
-        elif operation == ca.OP_CONST:
-            constant = float(function.instruction_constant(k))
-            if not math.isfinite(constant):
-                raise NotImplementedError(f'{function.name()} holds the constant {constant}')
-            value = _Value(BASE, f'spread({constant!r})')
-        elif operation in TEMPLATES:
-            operands = tuple(register[i] for i in inputs)
-            groups = {values[i].group for i in operands} - {BASE}
-            if len(groups) > 1:
-                raise ValueError(f'{function.name()}: a value depends on two seeds')
-            group = groups.pop() if groups else BASE
-            value = _Value(group, '', TEMPLATES[operation], operands)
-        else:
-            raise NotImplementedError(f'operation {operation} of {function.name()} has no C code')
-        register[places[0]] = len(values)
+            value.text = INPUTS[which].format(index) if fixed else f'seed[{index}]'
+            value.group = BASE if fixed else which - n_fixed
+        groups = {values[i].group for i in operands} - {BASE}
+        if len(groups) > 1:
+            raise ValueError(f'{function.name()}: a value depends on two seeds')
+        value.group = groups.pop() if groups else value.group
+        register[instruction.register] = len(values)
         values.append(value)
     return values, outputs
 

@@ -90,7 +90,7 @@ class SweptDerivatives:
         """C code of the functions NAME_value, NAME_first and NAME_second."""
         sets = self.function.sets
         zs, p = self._zs, self.function.p
-        value = _program(self.value, f'{self.name}_value', 2)
+        value = passes(self.value, f'{self.name}_value', 2, has_values=True)
         seeds = [ca.SX.sym('seed', len(part)) for part in sets]
         sweeps = [
             ca.jtimes(self._out, ca.vertcat(*(zs[i] for i in part)), seed)
@@ -110,9 +110,9 @@ class SweptDerivatives:
         parts = [
             value,
             _call_value(self.name),
-            _program(first, f'{self.name}_first', 2, has_values=True),
+            passes(first, f'{self.name}_first', 2, has_values=True),
             self._call_first(),
-            _program(second, f'{self.name}_second', 3, has_values=False),
+            passes(second, f'{self.name}_second', 3, has_values=False),
             self._call_second(ahead),
         ]
         return '\n'.join(parts)
@@ -191,8 +191,3 @@ def _call_value(name: str) -> str:
         f'static void {name}_value(const vec *in, const double *p, vec *out) {{\n'
         f'    {name}_value_base(in, p, NULL, NULL, NULL, out);\n}}'
     )
-
-
-def _program(function: Any, name: str, n_fixed: int, has_values: bool = True) -> str:
-    """C code of a function whose inputs after the first `n_fixed` are seeds of sweeps."""
-    return passes(function, name, n_fixed, has_values)
