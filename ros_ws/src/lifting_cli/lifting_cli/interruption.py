@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""What stops a run from outside, and that the clearing up after it is not stopped, too."""
+"""Signals that stop a run, and a mask for them during the clean-up."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 @contextmanager
 def stopped_by_signals() -> Iterator[None]:
-    """Have SIGTERM and SIGHUP raise KeyboardInterrupt here, as Ctrl-C does.
+    """Raise KeyboardInterrupt on SIGTERM and SIGHUP, as on Ctrl-C.
 
     A signal that is ignored stays ignored (`nohup`). Only the main thread can do this.
     """
@@ -33,8 +33,8 @@ def stopped_by_signals() -> Iterator[None]:
             signal.signal(number, handler)
 
 
-class Deafness:
-    """Ignores what would stop the clearing up half-way; does nothing outside the main thread."""
+class SignalMask:
+    """Ignore the stopping signals during the clean-up; no effect outside the main thread."""
 
     def __init__(self) -> None:
         self._before: dict[signal.Signals, Any] = {}
@@ -45,7 +45,7 @@ class Deafness:
             self._before = {number: signal.signal(number, signal.SIG_IGN) for number in STOPPING}
 
     def end(self) -> None:
-        """Heed the signals as before."""
+        """Restore the previous signal handlers."""
         for number, handler in self._before.items():
             signal.signal(number, handler)
         self._before = {}

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from lifting_cli.graph_errors import NodeDiedError
-from lifting_cli.interruption import Deafness
+from lifting_cli.interruption import SignalMask
 
 #: Order of start: what computes longest before it is ready comes first.
 NODES = ('muscle_analyzer', 'lift_predictor', 'motion_tracker', 'injury_monitor')
@@ -218,7 +218,7 @@ def node_processes(
     list of NodeProcess
     """
     processes: list[NodeProcess] = []
-    deafness = Deafness()
+    mask = SignalMask()
     try:
         for name in (*NODES, VISUALIZATION) if visualize else NODES:
             module = f'{name}.{name}_node'
@@ -226,6 +226,6 @@ def node_processes(
             processes.append(start_module(name, module, log_folder, station, parameters=values))
         yield processes
     finally:
-        deafness.begin()
+        mask.begin()
         stop_all(processes)
-        deafness.end()
+        mask.end()

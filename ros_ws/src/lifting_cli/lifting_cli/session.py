@@ -27,7 +27,7 @@ from std_srvs.srv import SetBool, Trigger
 from injury_monitor.core.limits import limits_for
 from lifting_cli.graph import Graph
 from lifting_cli.graph_errors import SessionError
-from lifting_cli.interruption import Deafness
+from lifting_cli.interruption import SignalMask
 from lifting_cli.live_state import FOLLOWED, LiveState
 from lifting_cli.live_view import LiveView
 from lifting_cli.node_process import (
@@ -186,9 +186,9 @@ def run_online(
         If the recording cannot be read.
     """
     logs = options.output / 'logs'
-    deafness = Deafness()
+    mask = SignalMask()
     with ExitStack() as stack:
-        stack.callback(deafness.end)
+        stack.callback(mask.end)
         if processes is None:
             processes = stack.enter_context(
                 node_processes(logs, options.station, options.visualize)
@@ -216,7 +216,7 @@ def run_online(
             file=sys.__stderr__ or sys.stderr,
         )
         stack.callback(stop_all, [*helpers, *processes])
-        stack.callback(deafness.begin)
+        stack.callback(mask.begin)
         executor.add_node(node)
         graph = Graph(node, executor, options.station, processes, say)
         say(f'starting the graph: {", ".join(process.name for process in processes)}')

@@ -10,7 +10,7 @@ import threading
 
 import pytest
 
-from lifting_cli.interruption import STOPPING, Deafness, stopped_by_signals
+from lifting_cli.interruption import STOPPING, SignalMask, stopped_by_signals
 from lifting_cli.node_process import start_module
 
 
@@ -48,19 +48,19 @@ def test_what_the_caller_ignores_stays_ignored():
 
 def test_clearing_up_is_not_stopped():
     before = handlers()
-    deafness = Deafness()
-    deafness.begin()
-    deafness.begin()
+    mask = SignalMask()
+    mask.begin()
+    mask.begin()
     for number in STOPPING:
         os.kill(os.getpid(), number)
-    deafness.end()
+    mask.end()
     assert handlers() == before
 
 
 def test_another_thread_changes_nothing():
     before = handlers()
-    deafness = Deafness()
-    thread = threading.Thread(target=lambda: (deafness.begin(), deafness.end()))
+    mask = SignalMask()
+    thread = threading.Thread(target=lambda: (mask.begin(), mask.end()))
     thread.start()
     thread.join()
     assert handlers() == before
@@ -81,19 +81,19 @@ def test_stop_signals_end_a_process_that_waits(tmp_path):
     script = tmp_path / 'run.py'
     script.write_text(
         'import sys, time\n'
-        'from lifting_cli.interruption import Deafness, stopped_by_signals\n'
-        'deafness = Deafness()\n'
+        'from lifting_cli.interruption import SignalMask, stopped_by_signals\n'
+        'mask = SignalMask()\n'
         'try:\n'
         '    with stopped_by_signals():\n'
         '        try:\n'
         '            print("ready", flush=True)\n'
         '            time.sleep(60)\n'
         '        finally:\n'
-        '            deafness.begin()\n'
+        '            mask.begin()\n'
         '            print("clearing up", flush=True)\n'
         '            time.sleep(0.5)\n'
         '            print("done", flush=True)\n'
-        '            deafness.end()\n'
+        '            mask.end()\n'
         'except KeyboardInterrupt:\n'
         '    sys.exit(130)\n'
     )

@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Errors of bag import, reading, playing and recording."""
+"""Exceptions of bag import, reading, playing and recording."""
 
 from human_model.exceptions import LiftingError
 
 
 class BagError(LiftingError):
-    """Base of every error raised by this sub-package."""
+    """Base of the exceptions of this package."""
 
 
 class FileFormatError(BagError):
