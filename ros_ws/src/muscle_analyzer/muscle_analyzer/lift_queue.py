@@ -71,7 +71,7 @@ class LiftQueue:
         self._lifts: deque[tuple[WaitingLift, Iterator[None]]] = deque()
 
     def __len__(self) -> int:
-        """Give the number of lifts that are not finished."""
+        """Return the number of lifts that are not finished."""
         return len(self._lifts)
 
     def add(self, lift: WaitingLift) -> None:

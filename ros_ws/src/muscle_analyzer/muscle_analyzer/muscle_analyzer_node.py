@@ -244,7 +244,7 @@ class MuscleAnalyzerNode(PipelineNode):
 
 
 def _bytes(kind: type, fields: dict[str, Any]) -> bytes:
-    """Give a message as it is sent."""
+    """Return a message as it is sent."""
     return conversions.WRITERS[kind].write(fields)
 
 

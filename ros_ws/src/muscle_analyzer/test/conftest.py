@@ -208,7 +208,7 @@ class BoxLift:
 
 @pytest.fixture(scope='session')
 def box_lift():
-    """Give 0.3 s of rising with a box; the left foot leaves the ground at the end."""
+    """Return 0.3 s of rising with a box; the left foot leaves the ground at the end."""
     subject = Subject('p01', 'male', 63.5, 1.69, 25)
     try:
         analyzer = MuscleAnalyzer(subject)

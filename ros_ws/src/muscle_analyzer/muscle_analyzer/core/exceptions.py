@@ -26,7 +26,7 @@ class ModelCacheError(MuscleAnalyzerError):
 
 
 class UnknownNameError(MuscleAnalyzerError):
-    """A body, joint, coordinate, point or option was asked for that does not exist."""
+    """A body, joint, coordinate, point or option of this name does not exist."""
 
 
 class ScalingError(MuscleAnalyzerError):
@@ -34,7 +34,7 @@ class ScalingError(MuscleAnalyzerError):
 
 
 class TransferError(MuscleAnalyzerError):
-    """A motion cannot be taken over by the musculoskeletal model."""
+    """A motion cannot be transferred to the musculoskeletal model."""
 
 
 class InputArrayError(MuscleAnalyzerError):

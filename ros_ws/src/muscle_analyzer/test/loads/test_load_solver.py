@@ -24,7 +24,7 @@ BEND = {
 
 @pytest.fixture(scope='module')
 def motion(lifting_multibody):
-    """Give five samples of bending: coordinates, rates, accelerations, wrenches on the feet."""
+    """Return five samples of bending: coordinates, rates, accelerations, wrenches on the feet."""
     names = lifting_multibody.coordinate_names
     by = np.array([BEND.get(name, 0.0) for name in names])
     q = np.linspace(0.8, 1.0, 5)[:, None] * by

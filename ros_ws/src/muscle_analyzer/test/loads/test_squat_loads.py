@@ -24,7 +24,7 @@ STORED = np.load(Path(__file__).parents[1] / 'reference' / 'moment_arms_squats.n
 
 @pytest.fixture(scope='module')
 def optimum(squats):
-    """Give OpenSim's muscle forces (n, n_m) and reserves (n, n_q) [N, N m]."""
+    """Return OpenSim's muscle forces (n, n_m) and reserves (n, n_q) [N, N m]."""
     names, values = squats.reference('static_optimization_force.sto')
     assert STORED['times'] == pytest.approx(values[:, 0])
     columns = dict(zip(names, values.T, strict=True))
@@ -44,7 +44,7 @@ def solutions(squats):
 
 
 def cost_gaps(squats, optimum):
-    """Give our and OpenSim's cost and the muscles' force difference at equal torques.
+    """Return our and OpenSim's cost and the muscles' force difference at equal torques.
 
     The torques are those that OpenSim's muscles and reserves balanced; the moment arms are ours,
     which differ from its by 0.4 mm at most.

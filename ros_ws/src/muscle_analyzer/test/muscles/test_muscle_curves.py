@@ -46,12 +46,12 @@ def parameters():
 
 
 def each(curve, values, *shape):
-    """Give a curve's values (n,)."""
+    """Return a curve's values (n,)."""
     return np.array([curve(value, *shape) for value in values])
 
 
 def fibres(chosen):
-    """Give lengths, velocities and cosines of the reference's fibres, (n, n_m) each."""
+    """Return lengths, velocities and cosines of the reference's fibres, (n, n_m) each."""
     lengths, velocities = np.atleast_2d(REFERENCE['path_length'], REFERENCE['path_velocity'])
     rows = zip(lengths, velocities, strict=True)
     table = (chosen.tendon_slack_length, chosen.thickness)
@@ -70,7 +70,7 @@ def test_curves_equal_opensim():
 
 
 def test_published_points():
-    """Give the points through which the curves must pass (unstretched)."""
+    """Return the points through which the curves must pass (unstretched)."""
     assert active_force_length(1.0) == pytest.approx(1.0, abs=1e-12)
     assert each(force_velocity, (-1.0, 0.0)) == pytest.approx([0.0, 1.0], abs=1e-12)
     assert each(passive_force_length, (0.2, 1.6)) == pytest.approx([0.0, 1.0], abs=1e-12)

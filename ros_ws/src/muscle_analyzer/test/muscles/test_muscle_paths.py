@@ -54,7 +54,7 @@ def paths_at(model, table, q):
 
 
 def our_paths(which, geodesic=False):
-    """Give lengths and moment arms at the reference postures, in the reference's order."""
+    """Return lengths and moment arms at the reference postures, in the reference's order."""
     model, data = compiled(which), reference(which)
     names = list(model.coordinate_names)
     order = [list(data['coordinates']).index(name) for name in names]

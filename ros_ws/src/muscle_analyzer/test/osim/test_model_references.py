@@ -65,7 +65,7 @@ def state_at(model, q):
 
 
 def postures(name):
-    """Give the reference's postures (n, n_q) in the model's order, and that order."""
+    """Return the reference's postures (n, n_q) in the model's order, and that order."""
     model, data = compiled(name), reference(name)
     order = [list(data['coordinates']).index(c) for c in model.coordinate_names]
     return data['posture'][:, order], order

@@ -66,7 +66,7 @@ def state_at(model, q, qd=None, qdd=None):
 
 
 def place(rotation, translation):
-    """Give rotation and origin of the body behind the joint's moved frame."""
+    """Return rotation and origin of the body behind the joint's moved frame."""
     whole = BASE @ rotation
     origin = np.array([0.1, 0.2, 0.3]) + BASE @ np.asarray(translation, dtype=float)
     return whole, origin - whole @ [0.0, -0.1, 0.05]

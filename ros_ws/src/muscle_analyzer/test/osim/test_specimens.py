@@ -55,7 +55,7 @@ def paths_at(table, q):
 
 @cache
 def errors():
-    """Give the differences of lengths (n, n_m) and of moment arms (n, n_m, n_q) from OpenSim's."""
+    """Return the differences of lengths (n, n_m) and moment arms (n, n_m, n_q) from OpenSim's."""
     q, order = postures()
     table = path_table(specimens())
     found = [paths_at(table, posture) for posture in q]

@@ -89,7 +89,7 @@ def test_ties_at_the_largest_activation(torque, copies):
 
 
 def gap(optimizer, matrix, torque, result):
-    """Give by how much the cost exceeds what the multipliers prove to be the least, and that.
+    """Return by how much the cost exceeds what the multipliers prove to be the least, and that.
 
     For any multipliers the least of cost less y times the balance's error is no more than the
     least cost. Muscles at b together press on it with the cost of a unit of b, unless b is at a

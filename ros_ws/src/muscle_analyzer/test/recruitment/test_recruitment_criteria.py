@@ -28,7 +28,7 @@ def solver(n_c, n_m, criterion, weight=None, least=None, **options):
 
 
 def problem(seed, n_c=20, n_m=100):
-    """Give a sparse torque matrix [N m] and torques that activations of 0.01 to 0.8 make."""
+    """Return a sparse torque matrix [N m] and torques that activations of 0.01 to 0.8 make."""
     rng = np.random.default_rng(seed)
     matrix = rng.normal(0.0, 30.0, (n_c, n_m)) * (rng.random((n_c, n_m)) < 0.2)
     return matrix, matrix @ rng.uniform(0.01, 0.8, n_m)
@@ -95,7 +95,7 @@ def test_every_criterion_satisfies_its_optimality_conditions(seed, criterion, sc
 
 
 def pressed_on_the_largest(result, matrix, weight):
-    """Give what the muscles at the largest activation would save by more of it."""
+    """Return what the muscles at the largest activation would save by more of it."""
     top = result.activation >= result.activation.max() - 1e-12
     force = matrix.T @ result.multiplier - 2e-3 * weight * result.activation
     return np.where(top, np.maximum(force, 0.0), 0.0).sum()

@@ -30,7 +30,7 @@ def solver(n_c, n_m, reserves=None, joints=None, **options):
 
 
 def random_problem(seed, n_c=25, n_m=120, share=0.15):
-    """Give a sparse torque matrix of a muscular system's size [N m] and torques to match."""
+    """Return a sparse torque matrix of a muscular system's size [N m] and torques to match."""
     rng = np.random.default_rng(seed)
     matrix = rng.normal(0.0, 30.0, (n_c, n_m)) * (rng.random((n_c, n_m)) < share)
     return matrix, matrix @ rng.uniform(0.0, 1.2, n_m) * rng.choice([0.3, 1.0])

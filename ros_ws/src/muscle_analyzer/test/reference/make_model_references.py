@@ -50,7 +50,7 @@ def release_welds(model: opensim.Model, state: opensim.State) -> None:
 
 
 def random_posture(model: opensim.Model, names: list[str], rng: np.random.Generator) -> np.ndarray:
-    """Give values drawn evenly from the inner part of each coordinate's range."""
+    """Return values drawn evenly from the inner part of each coordinate's range."""
     values = []
     for name in names:
         coordinate = model.getCoordinateSet().get(name)

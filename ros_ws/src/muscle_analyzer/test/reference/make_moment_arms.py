@@ -73,7 +73,7 @@ def set_posture(
 def lengths_and_arms(
     model: opensim.Model, state: opensim.State, about: list[str]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Give path lengths (n_m,) and moment arms (n_m, n_c) of all muscles, m."""
+    """Return path lengths (n_m,) and moment arms (n_m, n_c) of all muscles, m."""
     muscles = model.getMuscles()
     coordinates = model.getCoordinateSet()
     lengths = np.zeros(muscles.getSize())
@@ -87,7 +87,7 @@ def lengths_and_arms(
 
 
 def random_postures(model: opensim.Model, names: list[str]) -> list[dict[str, float]]:
-    """Give postures drawn evenly from the inner part of each coordinate's range."""
+    """Return postures drawn evenly from the inner part of each coordinate's range."""
     rng = np.random.default_rng(SEED)
     postures = []
     for _ in range(POSTURES):
@@ -105,7 +105,7 @@ def random_postures(model: opensim.Model, names: list[str]) -> list[dict[str, fl
 def motion_postures(
     path: Path, times: list[float], model: opensim.Model, names: list[str]
 ) -> list[dict[str, float]]:
-    """Give the postures of a motion file at the samples nearest to the given times."""
+    """Return the postures of a motion file at the samples nearest to the given times."""
     table = opensim.TimeSeriesTable(str(path))
     if table.getTableMetaDataString('inDegrees') == 'yes':
         model.getSimbodyEngine().convertDegreesToRadians(table)
@@ -116,7 +116,7 @@ def motion_postures(
 
 
 def curve_samples(model: opensim.Model) -> dict[str, np.ndarray]:
-    """Give the multipliers of the first muscle's curves on a grid."""
+    """Return the multipliers of the first muscle's curves on a grid."""
     muscle = opensim.DeGrooteFregly2016Muscle.safeDownCast(model.getMuscles().get(0))
     muscle.set_ignore_passive_fiber_force(False)
     length = np.linspace(0.3, 1.7, 57)
@@ -135,7 +135,7 @@ def curve_samples(model: opensim.Model) -> dict[str, np.ndarray]:
 def rigid_tendon_samples(
     model: opensim.Model, state: opensim.State, couplers: dict, posture: dict[str, float]
 ) -> dict[str, np.ndarray]:
-    """Give fibre lengths, pennation angles and fibre velocities of all muscles."""
+    """Return fibre lengths, pennation angles and fibre velocities of all muscles."""
     rng = np.random.default_rng(SEED)
     set_posture(model, state, couplers, posture)
     for name in posture:

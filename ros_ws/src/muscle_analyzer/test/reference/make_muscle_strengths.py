@@ -51,7 +51,7 @@ PASSIVE = {
 
 
 def samples(curve, properties: dict[str, float], at: np.ndarray) -> np.ndarray:
-    """Give a curve's values with the given properties, and with its defaults."""
+    """Return a curve's values with the given properties, and with its defaults."""
     plain = [curve.calcValue(float(x)) for x in at]
     for name, value in properties.items():
         getattr(curve, f'set_{name}')(value)
@@ -60,7 +60,7 @@ def samples(curve, properties: dict[str, float], at: np.ndarray) -> np.ndarray:
 
 
 def strengths(path: Path, rng: np.random.Generator) -> dict[str, np.ndarray]:
-    """Give lengths, speeds and forces (n, n_m) of a model's muscles."""
+    """Return lengths, speeds and forces (n, n_m) of a model's muscles."""
     model = opensim.Model(str(path))
     muscles = model.updMuscles()
     # OpenSim has no rigid tendon for the passive force of Thelen's muscle.

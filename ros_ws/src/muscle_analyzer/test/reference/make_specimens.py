@@ -79,7 +79,7 @@ ABOVE, BELOW = 'slider', 'gimbal'
 
 
 def surfaces() -> dict[str, tuple[str, str]]:
-    """Give every surface's element and method by its name."""
+    """Return every surface's element and method by its name."""
     shapes = {
         'cylinder': ('WrapCylinder', '<radius>0.04</radius><length>0.3</length>', ('hybrid',)),
         'sphere': ('WrapSphere', '<radius>0.05</radius>', ('hybrid',)),

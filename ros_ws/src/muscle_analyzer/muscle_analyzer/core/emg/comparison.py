@@ -29,7 +29,7 @@ from muscle_analyzer.core.loads.analysis import MuscleAnalysis
 
 #: Shifts are tried in steps of 1 ms, a sampling interval of the EMG at its lowest rate.
 LAG_STEP = 1e-3
-#: Largest shift, as a share of the lift: further apart they are not the same event.
+#: Largest shift, as a fraction of the lift; beyond it the two are not the same event.
 LARGEST_LAG = 0.5
 #: Smallest standard deviation of an activation that is not constant.
 CONSTANT = 1e-6
@@ -127,7 +127,7 @@ class LiftActivations:
 
     @classmethod
     def of(cls, analysis: MuscleAnalysis) -> LiftActivations:
-        """Give those of an analysis."""
+        """Return those of an analysis."""
         good = np.array([report.ok for report in analysis.reports])
         return cls(
             analysis.lift_id, analysis.time, analysis.muscle_names, analysis.activation, good
@@ -145,12 +145,12 @@ def emg_muscles() -> tuple[EmgMuscle, ...]:
 
 
 def muscle_of_channel(channel: str) -> tuple[EmgMuscle, str]:
-    """Return muscle and side ('r' or 'l') that a channel's name says: `BFR`, `EMG_VL_l`, ...
+    """Return muscle and side ('r' or 'l') from a channel's name: `BFR`, `EMG_VL_l`, ...
 
     Raises
     ------
     EmgError
-        If the name does not say both; has the names that do.
+        If the name does not contain both; lists the valid names.
     """
     words = [w for w in re.split(r'[^a-z0-9]+', channel.lower()) if w and w not in _FILLERS]
     sides = [_SIDES[word] for word in words if word in _SIDES]
@@ -201,7 +201,7 @@ def match_envelopes(
     lift : LiftActivations
         Samples whose muscle forces are not good data are left out.
     channels : mapping of str to str, optional
-        In place of a channel's own name, one that says muscle and side.
+        Names with muscle and side, in place of channels' own names.
 
     Raises
     ------

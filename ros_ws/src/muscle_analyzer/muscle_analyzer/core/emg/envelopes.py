@@ -4,7 +4,7 @@
 
 The dissertation's section 4.3: band-pass of 10 to 450 Hz, rectified, low-pass of 5 Hz, divided by
 the reading of the same channel in a maximum voluntary contraction (MVC). Its filters are those of
-Visual3D, whose documentation (page "Lowpass Filter") says that they are second-order Butterworth
+Visual3D, whose documentation (page "Lowpass Filter") describes them as second-order Butterworth
 filters run forwards and backwards: no delay. Cut-off frequencies are those of one pass here, as in
 the project's other filters.
 """
@@ -25,7 +25,7 @@ PASS_BAND, ENVELOPE_CUTOFF = (10.0, 450.0), 5.0
 FILTER_ORDER = 2
 #: Lowest sampling rate [Hz]: the pass band must end clearly below half of it.
 LOWEST_RATE = 1000.0
-#: Time steps may differ from their median by this share.
+#: Time steps may differ from their median by this fraction.
 EVEN = 0.01
 #: Kept of a maximum's name in reports.
 OWN_MAXIMUM, GIVEN_MVC = 'maximum of the recording', 'MVC'
@@ -61,11 +61,12 @@ class Envelopes:
     time : (n,) array
         s.
     values : (n, n_channels) array
-        Share of the reference: 1 at the maximum voluntary contraction.
+        Fraction of the reference: 1 at the maximum voluntary contraction.
     reference : (n_channels,) array
-        What was divided by, in the channels' units.
+        Divisor, in the channels' units.
     normalised_by : tuple of str
-        `GIVEN_MVC` or `OWN_MAXIMUM` for each channel; with the latter, sizes say nothing.
+        `GIVEN_MVC` or `OWN_MAXIMUM` for each channel; with the latter, amplitudes cannot be
+        compared.
     """
 
     channels: tuple[str, ...]
@@ -124,7 +125,7 @@ def linear_envelopes(recording: EmgRecording) -> Array:
     EmgError
         As for `sampling_rate`, or if the recording is shorter than a period of the low-pass.
     """
-    # Loads for long: nobody but who has EMG needs it.
+    # Slow to import, and needed only with EMG.
     from scipy.signal import butter, sosfiltfilt
 
     rate = sampling_rate(recording)
@@ -146,7 +147,7 @@ def linear_envelopes(recording: EmgRecording) -> Array:
 def normalised_envelopes(
     recording: EmgRecording, mvc: Mapping[str, float] | None = None
 ) -> Envelopes:
-    """Return envelopes as shares of the maximum voluntary contraction.
+    """Return envelopes as fractions of the maximum voluntary contraction.
 
     Parameters
     ----------

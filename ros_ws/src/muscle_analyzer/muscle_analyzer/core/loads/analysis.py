@@ -19,7 +19,7 @@ from muscle_analyzer.core.muscles.activation_dynamics import ActivationDynamics
 
 
 class Origin(NamedTuple):
-    """Whose block is analysed and where it comes from; see `MuscleAnalysis`."""
+    """Person and source of a block; see `MuscleAnalysis`."""
 
     lift_id: str
     source: str
@@ -31,10 +31,10 @@ class Origin(NamedTuple):
 class MuscleAnalysis:
     """Muscle forces and L5-S1 loads of n samples.
 
-    A sample whose status is not `OK` is not good data.  What could not be computed is NaN; what
-    muscles that are too weak leave to the reserves is kept and marked.  The L5-S1 load has
+    A sample whose status is not `OK` is not good data.  Values that could not be computed are NaN;
+    torque that too weak muscles leave to the reserves is kept and marked.  The L5-S1 load has
     reports of its own, which are `OK` when muscles are too weak elsewhere than at the lumbar
-    joints, and the joint torques have statuses of their own, which do not hang on muscles.
+    joints, and the joint torques have statuses of their own, which do not depend on muscles.
 
     Attributes
     ----------
@@ -77,7 +77,7 @@ class MuscleAnalysis:
         Net moment at L5-S1 from trunk, arms, head and box, and from plates, legs and pelvis;
         world frame (REP-103) [N m].
     pelvis_residual : (n, 6)
-        Force [N] and moment about the pelvis' origin [N m] that the motion asks for beyond the
+        Force [N] and moment about the pelvis' origin [N m] that the motion needs beyond the
         external forces; world frame.
     hand_distance, foot_distance : (n, 2)
         Largest distance of the points of the [right, left] hand and foot between the two
@@ -129,7 +129,7 @@ class MuscleAnalysis:
     reports: tuple[SolveReport, ...]
 
     def __len__(self) -> int:
-        """Give the number of samples."""
+        """Return the number of samples."""
         return int(self.time.size)
 
     @property
@@ -204,7 +204,7 @@ class MuscleAnalysis:
 
 
 class JoinedParts:
-    """Joins the analyses of consecutive parts of a lift as they come: nothing is left for its end.
+    """Joins the analyses of consecutive parts of a lift when they arrive.
 
     Parameters
     ----------
@@ -219,11 +219,11 @@ class JoinedParts:
         self._first: MuscleAnalysis | None = None
 
     def __len__(self) -> int:
-        """Give the number of samples that have come."""
+        """Return the number of samples so far."""
         return len(self._reports['reports'])
 
     def add(self, part: MuscleAnalysis) -> None:
-        """Take the next part: of the same lift, person and options as the first."""
+        """Add the next part: of the same lift, person and options as the first."""
         if self._first is None:
             self._first = part
             values = {field.name: getattr(part, field.name) for field in fields(part)}
@@ -239,7 +239,7 @@ class JoinedParts:
             reports.extend(getattr(part, name))
 
     def whole(self) -> MuscleAnalysis:
-        """Give the analysis of the whole lift.
+        """Return the analysis of the whole lift.
 
         Raises
         ------

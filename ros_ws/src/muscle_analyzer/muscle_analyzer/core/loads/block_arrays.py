@@ -3,7 +3,7 @@
 """From the arrays of a motion to those of the solver and back, compiled.
 
 Motions and results are in REP-103 axes (forward, left, up), the solver in OpenSim's (forward, up,
-right).  Renaming axes in numpy takes as long as solving a frame when there is only one.
+right).  For a single sample, renaming the axes in numpy takes as long as solving it.
 """
 
 from __future__ import annotations

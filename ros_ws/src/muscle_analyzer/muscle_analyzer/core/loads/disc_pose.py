@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Where the frame of the L5-S1 disc is in the laboratory, as messages and /tf have it."""
+"""Pose of the frame of the L5-S1 disc in the laboratory, as in messages and /tf."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from human_model.typing import Array
 
 @njit(error_model='numpy')
 def world_poses(poses: Array) -> tuple[Array, Array]:
-    """Give the places (n, 3) [m] and orientations (n, 4) of a frame in the laboratory.
+    """Return the places (n, 3) [m] and orientations (n, 4) of a frame in the laboratory.
 
     Orientations are quaternions xyzw with w >= 0, world (REP-103) <- frame.  As in
     `human_model.frames.quaternion_from_matrix` the largest of the four squared components is the

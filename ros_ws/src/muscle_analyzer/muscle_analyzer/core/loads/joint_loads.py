@@ -94,12 +94,12 @@ def read_loaded_joints() -> tuple[LoadedJoint, ...]:
 
 
 def lumbosacral_body(model: MultibodyModel) -> str:
-    """Give the name of the body above L5-S1: the fifth vertebra, or the torso without one."""
+    """Return the name of the body above L5-S1: the fifth vertebra, or the torso without one."""
     return L5 if L5 in model.body_names else TORSO
 
 
 def loaded_joints(model: MultibodyModel) -> tuple[LoadedJoint, ...]:
-    """Give the rows of the table for a model, those of vertebrae only if it has some."""
+    """Return the rows of the table for a model, those of vertebrae only if it has some."""
     joints = read_loaded_joints()
     body = lumbosacral_body(model)
     if body == L5:
@@ -195,7 +195,7 @@ class JointLoadFrames:
     def loads(
         self, reactions: Array, centres: Array, rotations: Array, lumbosacral: Array
     ) -> JointLoad:
-        """Give the loads in one state.
+        """Return the loads in one state.
 
         Parameters
         ----------
@@ -215,7 +215,7 @@ class JointLoadFrames:
 
 
 def _frame(joint: LoadedJoint, option: DiscOption) -> Array:
-    """Give the rotation (3, 3) body <- anatomical frame."""
+    """Return the rotation (3, 3) body <- anatomical frame."""
     if not joint.disc or option is DiscOption.VERTEBRAL:
         return FORWARD_LEFT_UP
     parameters = disc_parameters(DiscOption.BRUNO2015)

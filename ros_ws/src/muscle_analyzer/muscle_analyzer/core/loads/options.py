@@ -31,16 +31,16 @@ class MuscleAnalyzerOptions:
     geodesic_wrapping
         Whether paths over a single cylinder are geodesics or OpenSim's construction.
     strength
-        What muscle strength follows (see `muscle_strength.StrengthScaling`).
+        Scaling of the muscle strength (see `muscle_strength.StrengthScaling`).
     strength_ageing
-        Only with strength `population`: what age takes from trunk and shoulder muscles (see
+        Only with strength `population`: effect of age on trunk and shoulder muscles (see
         `muscle_strength.StrengthOptions`).
     mass_distribution
-        Whose share of the body mass each segment has (see `segment_masses.MassDistribution`).
+        Source of the segment masses (see `segment_masses.MassDistribution`).
     coefficient_set
         Published joint strength data (see `human_model.strength`).
     muscle_weighting
-        What an activation weighs in the cost (see `weights.MuscleWeighting`).
+        Weight of an activation in the cost (see `weights.MuscleWeighting`).
     abdominal_activation
         Least activation of the abdominal muscles: co-contraction that the optimisation alone
         never finds.
@@ -65,5 +65,5 @@ class MuscleAnalyzerOptions:
 
     @property
     def muscle_strength(self) -> StrengthOptions:
-        """What the strength of the muscles follows, put together."""
+        """The options of the muscle strength together."""
         return StrengthOptions(self.strength, self.strength_ageing, self.coefficient_set)

@@ -50,7 +50,7 @@ def _peak(x: float, centre: float, width: float) -> float:
 
 @njit(error_model='numpy')
 def _strength(table: TorqueTable, side: int, j: int, angle: float, speed: float) -> float:
-    """Give the strength of a joint [N m]; `human_model.strength.surface` in numbers."""
+    """Return the strength of a joint [N m]; `human_model.strength.surface` in numbers."""
     c = table.coefficients[side, j]
     of_angle = _peak(table.angle_factor[side, j] * angle, c[2], c[3])
     of_speed = _peak(table.speed_factor[side, j] * speed, c[5], c[6])
@@ -60,7 +60,7 @@ def _strength(table: TorqueTable, side: int, j: int, angle: float, speed: float)
 
 @njit(error_model='numpy')
 def _axis(quaternion: Array, number: int) -> tuple[float, float, float]:
-    """Give an axis of a frame, in the world, from the frame's quaternion xyzw."""
+    """Return an axis of a frame, in the world, from the frame's quaternion xyzw."""
     q = quaternion
     size = np.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
     x, y, z, w = q[0] / size, q[1] / size, q[2] / size, q[3] / size
@@ -81,7 +81,7 @@ def torques_and_limits(
     net_moment: Array,
     torque: Array,
 ) -> tuple[Array, Array, Array]:
-    """Give torque, lower and upper strength (n, n_j) [N m] of a block.
+    """Return torque, lower and upper strength (n, n_j) [N m] of a block.
 
     Parameters
     ----------

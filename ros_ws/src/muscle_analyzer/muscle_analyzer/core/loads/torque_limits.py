@@ -157,7 +157,7 @@ class TorqueLimits:
             [of.bound(row.coordinate, side) for of, row in zip(strength, self.rows, strict=True)]
             for side in ('lower', 'upper')
         ]
-        # What the sagittal skeleton has no coordinate for is held at zero in it.
+        # Coordinates that the sagittal skeleton lacks are zero in it.
         column = [
             next((coordinates.index(c) for c in _names(row) if c in coordinates), -1)
             for row in self.rows
@@ -219,7 +219,7 @@ class TorqueLimits:
         )
 
     def _sources(self) -> NDArray[np.int64]:
-        """Give the numbers of axes and of coordinates of the analysis that torques come from."""
+        """Return the numbers of axes and of coordinates of the analysis that torques come from."""
         return np.array(
             [
                 PELVIS_AXES[row.name] if row.of_net_moment else self._coordinates.index(row.name)
@@ -229,5 +229,5 @@ class TorqueLimits:
 
 
 def _names(row: TorqueRow) -> tuple[str, str]:
-    """Give the names that a coordinate has in the 3D and in the sagittal skeleton."""
+    """Return the names that a coordinate has in the 3D and in the sagittal skeleton."""
     return row.coordinate, row.coordinate.removesuffix('_r').removesuffix('_l')

@@ -20,13 +20,13 @@ from muscle_analyzer.core.multibody.model import Tree
 
 
 class InverseDynamics(NamedTuple):
-    """What the motion and the external loads ask of the joints.
+    """Wrenches and generalised forces at the joints, from motion and external loads.
 
     Attributes
     ----------
     joint_wrench : (n_b, 6) array
         Wrench that must act on each body from its parent, by joint and muscles together. Of the
-        root body it is what the external loads do not explain: the residual.
+        root body it is the residual: the part that the external loads do not balance.
     tree_force : (n_x,) array
         Generalised force of every coordinate of the tree, as if none were coupled, N m or N.
     force : (n_q,) array
@@ -59,7 +59,7 @@ def add_force(wrenches: Array, body: int, force: Array, point: Array, moment: Ar
 
 @njit(inline='always')
 def _times(m: Array, x: float, y: float, z: float) -> tuple[float, float, float]:
-    """Give a matrix (3, 3) times a vector, in scalars."""
+    """Return a matrix (3, 3) times a vector, in scalars."""
     return (
         m[0, 0] * x + m[0, 1] * y + m[0, 2] * z,
         m[1, 0] * x + m[1, 1] * y + m[1, 2] * z,
@@ -69,7 +69,7 @@ def _times(m: Array, x: float, y: float, z: float) -> tuple[float, float, float]
 
 @njit(inline='always')
 def _into_body(m: Array, x: float, y: float, z: float) -> tuple[float, float, float]:
-    """Give a transposed matrix (3, 3) times a vector, in scalars."""
+    """Return a transposed matrix (3, 3) times a vector, in scalars."""
     return (
         m[0, 0] * x + m[1, 0] * y + m[2, 0] * z,
         m[0, 1] * x + m[1, 1] * y + m[2, 1] * z,

@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Joint reactions from muscle forces: the thesis' equation 4.11 from the hands and head down.
 
-The reaction at a joint is what the Newton-Euler equations of everything that the joint carries
-leave over after weight, external loads and muscle forces (Steele et al. 2012, Gait Posture
-35:556). Wrenches are (moment, force) about the ground's origin in ground axes, like everywhere in
-this package.
+The reaction at a joint is the remainder of the Newton-Euler equations of all bodies that the joint
+carries, after weight, external loads and muscle forces (Steele et al. 2012, Gait Posture 35:556).
+Wrenches are (moment, force) about the ground's origin in ground axes, like everywhere in this
+package.
 
-Muscles enter as the sum of what their paths do to each body (`paths.body_wrenches`):
+Muscles enter as the sum of the wrenches of their paths on each body (`paths.body_wrenches`):
 intermediate points and wrap surfaces count, not only origin and insertion.
 """
 
@@ -32,7 +32,7 @@ class NetMoment(NamedTuple):
     bottom_up : (3,) array
         From all the rest (for L5-S1: plates, legs and pelvis).
     difference : (3,) array
-        top_down - bottom_up: what plates, masses and motion do not agree on. Over a lift, the
+        top_down - bottom_up: the disagreement of plates, masses and motion. Over a lift, the
         quality measure that needs no reference.
     """
 
@@ -51,7 +51,7 @@ def joint_reactions(tree: Tree, joint_wrench: Array, muscle_wrench: Array) -> Ar
     joint_wrench : (n_b, 6) array
         Of `inverse_dynamics`: joint and muscles together.
     muscle_wrench : (n_b, 6) array
-        What all muscles do to the bodies, see `paths.body_wrenches`.
+        Wrenches of all muscles on the bodies, see `paths.body_wrenches`.
     """
     reaction = muscle_wrench.copy()
     compute_joint_reactions(tree, joint_wrench, reaction)
@@ -60,7 +60,7 @@ def joint_reactions(tree: Tree, joint_wrench: Array, muscle_wrench: Array) -> Ar
 
 @kernel
 def compute_joint_reactions(tree: Tree, joint_wrench: Array, wrench: Array) -> None:
-    """Put the `joint_reactions` in place of what all muscles do to the bodies (n_b, 6)."""
+    """Replace the wrenches (n_b, 6) of all muscles by the `joint_reactions`, in place."""
     accumulate_subtrees(tree.parent, wrench)
     for b in range(wrench.shape[0]):
         for i in range(6):
@@ -79,7 +79,7 @@ def net_moment(joint_wrench: Array, state: BodyState, body: int, root: int) -> N
     body : int
         The joint's child (for L5-S1 the fifth lumbar vertebra).
     root : int
-        The body that hangs on the ground's joint (pelvis): its joint wrench is the residual.
+        The body whose joint is on the ground (pelvis): its joint wrench is the residual.
 
     Notes
     -----

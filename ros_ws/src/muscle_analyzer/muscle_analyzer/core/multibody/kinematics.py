@@ -126,7 +126,7 @@ def coordinate_state(tree: Tree, q: Array, qd: Array, qdd: Array) -> CoordinateS
 def _move_coordinates(tree: Tree, q: Array, qd: Array, qdd: Array, out: CoordinateState) -> None:
     """Fill a `coordinate_state`, zeros before."""
     value, rate, acceleration, gain = out
-    # Plain arrays: to hand a tuple of them to a function costs more than the function.
+    # Plain arrays: passing a tuple of them to a function takes longer than the function.
     first, lower, anchor, coefficient = tree.functions
     independent, number = tree.independent, tree.coupling_function
     for i in range(independent.size):

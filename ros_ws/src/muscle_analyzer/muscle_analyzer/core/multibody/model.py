@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Turns a model as read into the flat arrays that the compiled functions work on.
+"""Converts a model as read into flat arrays for the compiled functions.
 
 Body 0 is the ground; every other body comes after its parent. The vector q holds the independent
 coordinates only: a coupled coordinate is a function of one of them, a locked one is constant. The
@@ -137,7 +137,7 @@ def compile_model(model: OsimModel) -> MultibodyModel:
     Raises
     ------
     ModelCompilationError
-        If the bodies are no tree that hangs on the ground, or couplers depend on each other.
+        If the bodies are no tree with the ground as root, or couplers depend on each other.
     """
     joints = _ordered_joints(model)
     names = [c.name for joint in model.joints for c in joint.coordinates]

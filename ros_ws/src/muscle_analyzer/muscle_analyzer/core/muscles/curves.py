@@ -46,7 +46,7 @@ MAX_VELOCITY = 10.0
 
 @njit(error_model='numpy')
 def active_force_length(length: float, width_scale: float = WIDTH_SCALE) -> float:
-    """Give the active force-length multiplier.
+    """Return the active force-length multiplier.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def active_force_length(length: float, width_scale: float = WIDTH_SCALE) -> floa
 
 @njit(error_model='numpy')
 def passive_force_length(length: float, strain: float = PASSIVE_STRAIN) -> float:
-    """Give the passive force multiplier.
+    """Return the passive force multiplier.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ def passive_force_length(length: float, strain: float = PASSIVE_STRAIN) -> float
 
 @njit(error_model='numpy')
 def force_velocity(velocity: float) -> float:
-    """Give the force-velocity multiplier.
+    """Return the force-velocity multiplier.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def force_velocity(velocity: float) -> float:
 
 
 class MuscleParameters(NamedTuple):
-    """Parameters of all muscles, each (n_m,) if nothing else is said.
+    """Parameters of all muscles, each (n_m,) unless stated otherwise.
 
     Attributes
     ----------
@@ -152,7 +152,7 @@ class MuscleParameters(NamedTuple):
 def fibre(
     slack: float, thickness: float, path_length: float, path_velocity: float
 ) -> tuple[float, float, float]:
-    """Give a muscle's fibre: length [m], velocity [m/s], cosine of its pennation angle.
+    """Return a muscle's fibre: length [m], velocity [m/s], cosine of its pennation angle.
 
     Parameters
     ----------
@@ -171,7 +171,7 @@ def fibre(
 def strength(
     muscles: MuscleParameters, path_length: Array, path_velocity: Array, passive: bool
 ) -> tuple[Array, Array]:
-    """Give what muscles can do along their paths at one instant.
+    """Return what muscles can do along their paths at one instant.
 
     Parameters
     ----------

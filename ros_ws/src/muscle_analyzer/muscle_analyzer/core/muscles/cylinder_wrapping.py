@@ -34,7 +34,7 @@ NOWHERE = (0.0, 0.0, 0.0)
 
 @njit(error_model='numpy')
 def component(vector: Vector, axis: int) -> float:
-    """Give one of the three components of a vector."""
+    """Return one of the three components of a vector."""
     return vector[0] if axis == 0 else (vector[1] if axis == 1 else vector[2])
 
 
@@ -46,7 +46,7 @@ def _apex_heights(
     far: bool,
     tangents: tuple[float, float, float, float],
 ) -> tuple[float, float]:
-    """Give the heights of the tangent points in the plane of both ends and the apex.
+    """Return the heights of the tangent points in the plane of both ends and the apex.
 
     `tangents` are x and y of the first and of the second tangent point; `far` puts the apex on
     the side of the axis away from the segment.  A height outside those of the ends is replaced by
@@ -82,7 +82,7 @@ def _apex_heights(
 
 @njit(error_model='numpy')
 def _tangents(x: float, y: float, radius: float) -> tuple[float, float, float, float]:
-    """Give the tangent points of a circle about the origin seen from a point outside it.
+    """Return the tangent points of a circle about the origin seen from a point outside it.
 
     The first two numbers are x and y of the point counter-clockwise of it (left of it, seen from
     the centre), then come those of the other.

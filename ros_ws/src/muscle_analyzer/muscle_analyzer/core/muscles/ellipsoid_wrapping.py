@@ -44,7 +44,7 @@ _NODES, _WEIGHTS = -_RAW_NODES[:6], 0.5 * _RAW_WEIGHTS[:6]
 def _guide(
     axes: Vector, enter: Vector, leave: Vector, axis: int, sign: int, method: int
 ) -> Vector:
-    """Give the surface point that fixes the plane of the path."""
+    """Return the surface point that fixes the plane of the path."""
     dx, dy, dz = leave[0] - enter[0], leave[1] - enter[1], leave[2] - enter[2]
     best, longest, begin = 0, dx, enter[0]
     if abs(dy) > abs(longest):

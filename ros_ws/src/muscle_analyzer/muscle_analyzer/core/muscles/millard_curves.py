@@ -101,7 +101,7 @@ def curve_table(curves: Sequence[SampledCurve]) -> CurveTable:
 def curve_value(
     lower: Array, step: Array, value: Array, slope: Array, curve: int, x: float
 ) -> float:
-    """Give the value of a curve at x.
+    """Return the value of a curve at x.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ def curve_value(
 def corner(
     x0: float, y0: float, slope0: float, x1: float, y1: float, slope1: float, curviness: float
 ) -> Array:
-    """Give the control points (2, 6) of a section between two points with given slopes.
+    """Return the control points (2, 6) of a section between two points with given slopes.
 
     The inner ones lie on the tangents, the nearer to where these cross the greater the curviness
     (0 to 1, of which OpenSim takes 0.1 to 0.9).
@@ -178,7 +178,7 @@ def sampled(sections: Sequence[Array]) -> SampledCurve:
 
 
 def active_curve(properties: Mapping[str, float]) -> SampledCurve:
-    """Give the active force over fibre length, by the properties of `ACTIVE`."""
+    """Return the active force over fibre length, by the properties of `ACTIVE`."""
     x0, x1, x3, slope, low = (properties[name] for name in ACTIVE)
     wide = 0.05
     y1 = 1.0 - slope * (1.0 - wide - x1)
@@ -198,7 +198,7 @@ def active_curve(properties: Mapping[str, float]) -> SampledCurve:
 
 
 def velocity_curve(properties: Mapping[str, float]) -> SampledCurve:
-    """Give the force over fibre velocity, lengthening positive, by those of `VELOCITY`."""
+    """Return the force over fibre velocity, lengthening positive, by those of `VELOCITY`."""
     far, near, isometric, out, near_out, most, bend, bend_out = (
         properties[name] for name in VELOCITY
     )
@@ -214,7 +214,7 @@ def velocity_curve(properties: Mapping[str, float]) -> SampledCurve:
 
 
 def passive_curve(properties: Mapping[str, float]) -> SampledCurve:
-    """Give the passive force over fibre length, by those of `PASSIVE` and its shape."""
+    """Return the passive force over fibre length, by those of `PASSIVE` and its shape."""
     zero, one = (1.0 + properties[name] for name in PASSIVE)
     shape = (LOW_STIFFNESS, STIFFNESS_STRAIN / (one - zero), CURVINESS)
     if all(name in properties for name in _SHAPE):

@@ -111,7 +111,7 @@ def _add_motion(
 
 @kernel
 def _pull(point: Array, n: int, k: int) -> Vector:
-    """Give the force on point k of a path of n points per unit of tension."""
+    """Return the force on point k of a path of n points per unit of tension."""
     x, y, z = 0.0, 0.0, 0.0
     for other in (k - 1, k + 1):
         if 0 <= other < n:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Turns the muscles of a model as read into the flat arrays of the compiled path functions."""
+"""Converts the muscles of a model as read into flat arrays for the compiled path functions."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from muscle_analyzer.core.muscles.wrap_table import WrapTable, starts, wrap_tabl
 from muscle_analyzer.core.osim.functions import FunctionTable, function_table
 from muscle_analyzer.core.osim.model import PathPoint
 
-#: A conditional point is there up to so far outside its range (constant of OpenSim), rad or m.
+#: Tolerance around the range of a conditional point (constant of OpenSim) [rad or m].
 CONDITION_MARGIN = 1e-5
 
 
@@ -41,7 +41,7 @@ class SpanTable(NamedTuple):
 
 
 class ProductTable(NamedTuple):
-    """What makes moment arms: wrenches on bodies times columns of the bodies' Jacobians.
+    """Factors of the moment arms: wrenches on bodies times columns of the bodies' Jacobians.
 
     Attributes
     ----------
@@ -208,7 +208,7 @@ def _spans(
     bodies: list[list[int]],
     routed: list[bool],
 ) -> SpanTable:
-    """Give the straight spans of the muscles that are not routed."""
+    """Return the straight spans of the muscles that are not routed."""
     counts: list[int] = []
     spans: list[tuple[int, int]] = []
     entries: list[list[int]] = []
@@ -236,7 +236,7 @@ def _spans(
 def _products(
     driven: list[list[set[int]]], bodies: list[list[int]], crossed: list[list[int]]
 ) -> ProductTable:
-    """Give the products of wrenches and columns of Jacobians that make the moment arms."""
+    """Return the products of wrenches and columns of Jacobians that make the moment arms."""
     columns: dict[tuple[int, int], int] = {}
     counts, entries, of_columns = [], [], []
     body_start = starts([len(body) for body in bodies])
@@ -267,7 +267,7 @@ def _numbers_of(kind: str, points: list[PathPoint]) -> IntArray:
 
 
 def _coordinate(multibody: MultibodyModel, point: PathPoint, name: str | None) -> int:
-    """Give the index of a coordinate that a path point depends on among all of the tree."""
+    """Return the index of a coordinate that a path point depends on among all of the tree."""
     names = multibody.tree_coordinate_names
     if name not in names:
         raise OsimFormatError(
@@ -292,7 +292,7 @@ def _driven_motions(multibody: MultibodyModel) -> list[list[set[int]]]:
 
 
 def _crossed(driven: list[list[set[int]]], bodies: list[int]) -> list[int]:
-    """Give the coordinates that move the bodies of one muscle against each other."""
+    """Return the coordinates that move the bodies of one muscle against each other."""
     first = driven[bodies[0]]
     return [
         q for q in range(len(first)) if any(driven[body][q] != first[q] for body in bodies[1:])

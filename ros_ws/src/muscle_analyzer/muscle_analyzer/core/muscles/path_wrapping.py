@@ -77,14 +77,14 @@ def out_of(frame: Array, k: int, local: Vector) -> Vector:
 
 @njit(error_model='numpy')
 def distance(a: Vector, b: Vector) -> float:
-    """Give the distance of two points."""
+    """Return the distance of two points."""
     dx, dy, dz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
     return math.sqrt(dx * dx + dy * dy + dz * dz)
 
 
 @njit(error_model='numpy')
 def gap(point: Array, k: int, other: int) -> float:
-    """Give the distance of two rows of (n, 3)."""
+    """Return the distance of two rows of (n, 3)."""
     dx, dy, dz = (
         point[other, 0] - point[k, 0],
         point[other, 1] - point[k, 1],

@@ -100,7 +100,7 @@ def allocate_paths(table: PathTable, n_b: int) -> tuple[PathWorkspace, CrossedPa
 def _place_points(
     table: PathTable, position: Array, rotation: Array, coordinate: Array, place: Array
 ) -> None:
-    """Put all path points (n_p, 3) where they are in ground axes."""
+    """Fill the places (n_p, 3) of all path points in ground axes."""
     bodies, location, motion = table.point_body, table.point_location, table.point_motion
     for p in range(bodies.size):
         b = bodies[p]
@@ -124,7 +124,7 @@ def _place_points(
 
 @njit(error_model='numpy', inline='always')
 def _moved(table: PathTable, motion: int, i: int, coordinate: Array) -> float:
-    """Give one coordinate of a moving point in its body [m]."""
+    """Return one coordinate of a moving point in its body [m]."""
     x = coordinate[table.motion_coordinate[motion, i]]
     return float(evaluate(table.functions, table.motion_function[motion, i], x)[0])
 
@@ -296,7 +296,7 @@ def compute_muscle_paths(
 
 @njit(error_model='numpy')
 def body_wrenches(table: PathTable, wrench: Array, force: Array, n_bodies: int) -> Array:
-    """Sum what muscles of given forces exert on the bodies.
+    """Return the sum of the wrenches of muscles of given forces on the bodies.
 
     Parameters
     ----------

@@ -30,7 +30,7 @@ DEFAULTS = {
 
 
 def thelen_shapes(muscles: Sequence[Muscle]) -> Array:
-    """Give the properties (n_m, 6) of `DEFAULTS` of a model's muscles, NaN for other kinds."""
+    """Return the properties (n_m, 6) of `DEFAULTS` of a model's muscles, NaN for other kinds."""
     return np.array(
         [
             [muscle.properties.get(name, default) for name, default in DEFAULTS.items()]
@@ -43,22 +43,22 @@ def thelen_shapes(muscles: Sequence[Muscle]) -> Array:
 
 @njit(error_model='numpy')
 def thelen_active(shape: Array, length: float) -> float:
-    """Give the active multiplier (equation 4) of a muscle of properties `shape` (6,)."""
+    """Return the active multiplier (equation 4) of a muscle of properties `shape` (6,)."""
     return float(np.exp(-((length - 1.0) ** 2) / shape[0]))
 
 
 @njit(error_model='numpy')
 def thelen_passive(shape: Array, length: float) -> float:
-    """Give the passive multiplier (equation 3), without force below the optimal length."""
+    """Return the passive multiplier (equation 3), without force below the optimal length."""
     stretch = max(length - 1.0, 0.0)
     return float(np.expm1(shape[1] * stretch / shape[2]) / np.expm1(shape[1]))
 
 
 @njit(error_model='numpy')
 def thelen_rate(shape: Array, velocity: float) -> float:
-    """Give the force-velocity multiplier (equations 6 and 7 solved for the force).
+    """Return the force-velocity multiplier (equations 6 and 7 solved for the force).
 
-    Beyond a share of the greatest force the relation goes on as a straight line.
+    Beyond a fraction of the greatest force the relation continues as a straight line.
     """
     af, most = shape[3], shape[4]
     if velocity < 0.0:

@@ -32,7 +32,7 @@ _STEPS, _TOLERANCE = 100, 1e-15
 
 @njit(error_model='numpy')
 def _slope(u: float, base: float, reach: float, c3: float, c4: float, c5: float) -> float:
-    """Give half the derivative of the squared distance of a line's point from a circle."""
+    """Return half the derivative of the squared distance of a line's point from a circle."""
     from_axis = math.sqrt(max(0.0, u * u * c4 + 2.0 * c3 * u + c5))
     return u + base - reach * (c4 * u + c3) / from_axis if from_axis > 0.0 else u + base
 

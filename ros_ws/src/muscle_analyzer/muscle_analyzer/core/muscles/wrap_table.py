@@ -15,7 +15,7 @@ from muscle_analyzer.core.multibody.model import MultibodyModel
 from muscle_analyzer.core.muscles.ellipsoid_wrapping import HYBRID, MIDPOINT
 from muscle_analyzer.core.osim.model import OsimModel, PathWrap
 
-#: Kinds of wrap object the path functions know.
+#: Kinds of wrap object of the path functions.
 CYLINDER, ELLIPSOID, SPHERE, TORUS = 0, 1, 2, 3
 _KINDS = {'cylinder': CYLINDER, 'ellipsoid': ELLIPSOID, 'sphere': SPHERE, 'torus': TORUS}
 _METHODS = {'hybrid': HYBRID, 'midpoint': MIDPOINT}
@@ -73,7 +73,7 @@ class WrapTable(NamedTuple):
 
 
 def starts(counts: list[int]) -> IntArray:
-    """Give where each of several runs begins in one array of all, and where the last ends."""
+    """Return where each of several runs begins in one array of all, and where the last ends."""
     return np.concatenate([[0], np.cumsum(counts, dtype=np.int64)]).astype(np.int64)
 
 

@@ -30,7 +30,7 @@ SAMPLES_PER_SOLUTION = 10
 
 @dataclass(frozen=True)
 class ExportOptions:
-    """How OpenSim shall share the torques.
+    """Settings of OpenSim's static optimisation.
 
     Attributes
     ----------

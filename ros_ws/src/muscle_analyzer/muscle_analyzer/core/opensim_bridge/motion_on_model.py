@@ -119,7 +119,7 @@ def motion_on_model(transfer: MotionTransfer, motion: BodyMotion, start: float) 
     Raises
     ------
     TransferError
-        If a sample cannot be taken over.
+        If a sample cannot be transferred.
     OsimFormatError
         If the generic model's file was damaged in the meantime.
     """

@@ -118,7 +118,7 @@ class OwnSide:
     def optimum(
         self, k: int, force: Array, activation: Array, reserve: Array
     ) -> tuple[float, float, Array]:
-        """Share the very torques that other muscle forces and reserves balance.
+        """Distribute the torques that other muscle forces and reserves balance.
 
         The muscles are as strong as the others': force over activation. The criterion is the sum
         of squares as OpenSim's, whatever that of the analysis is.
@@ -142,7 +142,7 @@ class OwnSide:
         strength = force / activation
         reserves = read_reserves(self.coordinate_names)
         unit = np.array([reserve.torque for reserve in reserves])
-        # OpenSim knows only sums of powers, and is asked for squares.
+        # OpenSim has only sums of powers; squares are used.
         options = replace(self._options.static_optimization, criterion=Criterion.SQUARES)
         solver = StaticOptimization(self.muscle_names, reserves, options)
         balance = solver.solve((arm * strength[:, None]).T, arm.T @ force + reserve)

@@ -59,7 +59,8 @@ def find_opensim(
     Raises
     ------
     OpenSimError
-        If there is none, or the one that was named does not have OpenSim; says how to get it.
+        If there is none, or the named one does not have OpenSim; the message has the command
+        that installs it.
     """
     environment = os.environ if environment is None else environment
     named = given or (Path(environment[VARIABLE]) if environment.get(VARIABLE) else None)
@@ -68,7 +69,7 @@ def find_opensim(
         raise OpenSimError(
             f'{path}: no such Python. {HOW}' if named else f'OpenSim is not installed. {HOW}'
         )
-    # An environment's python is a link: the link itself, not its target, knows the packages.
+    # An environment's python is a link: the link itself, not its target, leads to the packages.
     path = path.absolute()
     query = 'import opensim; print(opensim.GetVersion())'
     try:
@@ -92,7 +93,7 @@ def run_opensim(
     python: OpenSimPython,
     folder: Path,
     times: Array,
-    say: Callable[[str], None],
+    report: Callable[[str], None],
     together: bool = False,
 ) -> None:
     """Run OpenSim's tools on an exported folder; everything that they print goes to a log there.
@@ -104,7 +105,7 @@ def run_opensim(
         Of `export_motion`.
     times : (k,) array
         At which static optimisation and joint reactions are wanted, s.
-    say : callable
+    report : callable
         Takes a line when an instant is done.
     together : bool
         Whether each tool runs once from the first time to the last, which must be those of the
@@ -139,7 +140,7 @@ def run_opensim(
             for line in process.stdout:
                 out.write(line)
                 if line.rstrip().endswith('solved'):
-                    say(line.rstrip())
+                    report(line.rstrip())
             code = process.wait()
         finally:
             clock.cancel()

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""What this project and what OpenSim say of the same motion, in the same arrays.
+"""Results of this project and of OpenSim for the same motion, in the same arrays.
 
 Torques are of all samples, everything else of the few instants that OpenSim solved. Everything is
 in OpenSim's ground axes.
@@ -37,7 +37,7 @@ class Answer:
     ----------
     torque : (n, n_x) array
         Of all coordinates of the tree, coupled ones apart, N m or N; NaN where OpenSim
-        does not say.
+        has none.
     length : (k, n_m) array
         Muscle path lengths, m.
     moment_arm : (k, n_m, n_c) array

@@ -61,7 +61,7 @@ def joined(parts: list[Path], path: Path) -> None:
 
 
 def run(tool: Any, what: str) -> None:
-    """Run a tool; raise RuntimeError if it says no."""
+    """Run a tool; raise RuntimeError if it fails."""
     if not tool.run():
         raise RuntimeError(f'OpenSim: {what} failed')
 
@@ -143,7 +143,7 @@ def geometry(opensim: Any, times: list[float]) -> dict[str, Any]:
 
 
 def main() -> int:
-    """Run the tools and write what they say; return the exit code."""
+    """Run the tools and write their results; return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('folder', type=Path)
     parser.add_argument('--at', type=float, nargs='+', required=True, metavar='SECONDS')

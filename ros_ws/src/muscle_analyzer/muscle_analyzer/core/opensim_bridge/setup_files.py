@@ -81,7 +81,7 @@ class PointForce:
 
 
 def write_external_loads(path: Path, forces: Sequence[PointForce]) -> None:
-    """Write the document that says which columns of `LOADS_DATA` act on which body."""
+    """Write the document that assigns the columns of `LOADS_DATA` to bodies."""
     root = named('ExternalLoads', TOOL)
     objects = SubElement(root, 'objects')
     for force in forces:

@@ -38,7 +38,7 @@ class Storage:
     values : (n, m) array
         In SI units; angles in degrees if `in_degrees`.
     in_degrees : bool
-        What the header says; no if it says nothing.
+        The value in the header; False without one.
     """
 
     name: str

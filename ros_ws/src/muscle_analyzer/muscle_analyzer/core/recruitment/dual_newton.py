@@ -10,7 +10,7 @@ has with multipliers y of the balance the minimisers ``a(y) = clip((A^T y / (p w
 u)`` and ``c(y) = D y / 2``.  The dual function is concave, its gradient ``tau - A a(y) - D c(y)``
 for p = 2 piecewise linear, so each Newton step solves a symmetric positive definite system with
 one unknown a coordinate (Qi and Sun 1993, A nonsmooth version of Newton's method).  Exponent and
-weights enter through `_minimiser` alone; the reserves are paid for by their square whatever the
+weights enter through `_minimiser` alone; the cost of the reserves is their square for every
 exponent, which keeps the system definite.
 """
 
@@ -50,7 +50,7 @@ class Columns(NamedTuple):
 def _minimiser(
     pull: float, low: float, high: float, weight: float, exponent: float
 ) -> tuple[float, float]:
-    """Minimise ``w a^p - pull a`` over [low, high]; give the minimiser and its slope."""
+    """Minimise ``w a^p - pull a`` over [low, high]; return the minimiser and its slope."""
     if exponent == 2.0:
         slope = 0.5 / weight
         free = slope * pull
@@ -68,7 +68,7 @@ def _minimiser(
 
 @njit(error_model='numpy')
 def columns_of(matrix: Array) -> Columns:
-    """Give the non-zero entries of a matrix."""
+    """Return the non-zero entries of a matrix."""
     n_rows, n_columns = matrix.shape
     start = np.zeros(n_columns + 1, np.int64)
     for j in range(n_rows):
@@ -95,8 +95,8 @@ def columns_of(matrix: Array) -> Columns:
 def cholesky_solve(matrix: Array, vector: Array) -> bool:
     """Solve in place; the solution replaces `vector`.  False if not positive definite.
 
-    Of `matrix` only the lower triangle is used.  What is left of a row's first entry stays zero in
-    the factor and is left out: most muscles cross few joints, so that is most of it.
+    Of `matrix` only the lower triangle is used.  Entries left of a row's first non-zero stay zero
+    in the factor and are skipped: most entries, because most muscles cross few joints.
     """
     n = vector.size
     first = np.empty(n, np.int64)
@@ -146,7 +146,7 @@ def _evaluate(
     slope: Array,
     gradient: Array,
 ) -> float:
-    """Fill activations, their slopes and the dual's gradient; give its largest entry."""
+    """Fill activations, their slopes and the dual's gradient; return its largest entry."""
     start, row, value = columns
     for j in range(torque.size):
         gradient[j] = torque[j] - 0.5 * reserve[j] * reserve[j] * multiplier[j]
@@ -183,7 +183,7 @@ def _hessian(columns: Columns, reserve: Array, slope: Array, hessian: Array) -> 
 
 @njit(error_model='numpy')
 def dot(a: Array, b: Array) -> float:
-    """Give the product of two vectors."""
+    """Return the product of two vectors."""
     total = 0.0
     for j in range(a.size):
         total += a[j] * b[j]
@@ -203,11 +203,11 @@ def _step_size(
     first_slope: float,
     whole_slope: float,
 ) -> float:
-    """Find where along a step that is too long the slope of the dual has all but gone.
+    """Return the fraction of a step that is too long at which the slope of the dual is small.
 
     The slope falls along the step, from `first_slope` (positive) to `whole_slope` (negative).  Its
-    zero is sought by false position, halving the kept end's slope when one end stays twice (the
-    Illinois rule).  Along one line the pull on each muscle is a line too, which spares the matrix.
+    zero is found by false position with the Illinois rule.  Along one line the pull on each muscle
+    is linear too, so the matrix is not needed.
     """
     start, row, value = columns
     n_m = lower.size

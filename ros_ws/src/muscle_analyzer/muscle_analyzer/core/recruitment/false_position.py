@@ -38,7 +38,7 @@ def whole_step(first: float, whole: float, last: int) -> Bracket:
 
 @kernel
 def narrowed(bracket: Bracket, place: float, slope: float) -> Bracket:
-    """Put a place between the two in the stead of the one whose slope has its sign."""
+    """Return the bracket in which a place replaces the end whose slope has the same sign."""
     near, near_slope, past, past_slope, last = bracket
     if slope > 0.0:
         if last == 1:
@@ -51,6 +51,6 @@ def narrowed(bracket: Bracket, place: float, slope: float) -> Bracket:
 
 @kernel
 def crossing(bracket: Bracket) -> float:
-    """Give the place where a line through both ends is zero."""
+    """Return the place where a line through both ends is zero."""
     near, near_slope, past, past_slope, _ = bracket
     return near + (past - near) * near_slope / (near_slope - past_slope)

@@ -9,8 +9,8 @@ small multiple e of their squares decides among them::
     min  b + e sum w_i a_i^2 + sum c_j^2   subject to   A a + D c = tau,   l <= a <= b <= u
 
 For given multipliers y of the balance the minimisers are ``c(y) = D y / 2``, ``a(y) = clip(A^T y /
-(2 e w), l, b)`` and the b at which the muscles that it holds back press on it with 1 in all, which
-is what a unit of b costs (`_largest`).  They are unique, so the dual function is concave with a
+(2 e w), l, b)`` and the b at which the multipliers of the muscles at b add up to 1, the
+cost of one unit of b (`_largest`).  They are unique, so the dual function is concave with a
 piecewise linear gradient, as that of the other criteria is, and the same method finds its maximum
 (see `dual_newton`).  In the Hessian the muscles at b stand as one, with the sum of their columns.
 
@@ -46,7 +46,7 @@ SQUARES_WEIGHT = 1e-3
 SQUARES_WEIGHTS = (1.0, 0.1, 0.01, SQUARES_WEIGHT)
 #: Limit of Newton steps from a warm start: from farther away it is quicker to start from nothing.
 WARM_STEPS = 30
-#: Limit of rounds that take off what rounding left.
+#: Limit of the refinement steps against rounding errors.
 REFINEMENTS = 3
 #: Places of an activation: at its lower bound, between its bounds, at b.
 LOW, FREE, HIGH = -1, 0, 1
@@ -100,7 +100,7 @@ class _Iterate(NamedTuple):
 
 @njit(error_model='numpy')
 def _largest(problem: _Problem, pull: Array, guess: float) -> float:
-    """Give the b that muscles of these pulls press on with 1, or the bound of b next to it.
+    """Return the b that muscles of these pulls press on with 1, or the bound of b next to it.
 
     What they press with falls with b, piecewise linear and convex: from a guess one Newton step
     leads to the left of the solution, and from there the steps rise to it.
@@ -134,7 +134,7 @@ def _pull(columns: Columns, multiplier: Array, pull: Array) -> None:
 
 @njit(error_model='numpy')
 def _unbalanced(problem: _Problem, point: _Iterate) -> float:
-    """Fill what activations and multipliers leave unbalanced; give the largest of it."""
+    """Fill the imbalance of activations and multipliers; return its largest entry."""
     start, row, value = problem.columns
     gradient = point.gradient
     for j in range(gradient.size):
@@ -154,7 +154,7 @@ def _unbalanced(problem: _Problem, point: _Iterate) -> float:
 def _evaluate(problem: _Problem, point: _Iterate, guess: float) -> tuple[float, float, int]:
     """Fill the minimisers for the multipliers of an iterate.
 
-    Gives b, the largest entry of the gradient, and how many places have changed.
+    Returns b, the largest entry of the gradient, and the number of changed places.
     """
     _pull(problem.columns, point.multiplier, point.pull)
     b = _largest(problem, point.pull, guess)
@@ -177,7 +177,7 @@ def _evaluate(problem: _Problem, point: _Iterate, guess: float) -> tuple[float, 
 
 @njit(error_model='numpy')
 def _step(problem: _Problem, place: Places, step: Array) -> tuple[bool, float]:
-    """Solve for the Newton step in place of the gradient; give success, and how b goes with it.
+    """Solve for the Newton step in place of the gradient; return success and the change of b.
 
     Minus the dual's Hessian is that of reserves and free muscles, and of b if it is free.
     """
@@ -211,7 +211,7 @@ def _step(problem: _Problem, place: Places, step: Array) -> tuple[bool, float]:
 def _step_size(
     problem: _Problem, multiplier: Array, step: Array, guess: float, first: float, whole: float
 ) -> float:
-    """Find where along a step that is too long the slope of the dual has all but gone.
+    """Return the fraction of a step that is too long at which the slope of the dual is small.
 
     As in `dual_newton` by false position with the Illinois rule, between the slopes `first`
     (positive) at the beginning and `whole` (negative) at the end.
@@ -247,12 +247,12 @@ def _step_size(
 def _maximise(
     problem: _Problem, point: _Iterate, tolerance: float, max_iterations: int
 ) -> tuple[float, int, bool]:
-    """Maximise the dual from the multipliers of an iterate; give b, the steps, and success.
+    """Maximise the dual from the multipliers of an iterate; return b, the steps, and success.
 
     A whole step after which every activation is where it was has found the solution, but for
-    rounding.  A step cut short ends where some muscle meets or leaves a bound: if the next one
-    took it for fixed again, the two would go to and fro across that ridge.  It counts as free
-    then, which the step stays an ascent with.
+    rounding.  A step cut short ends where some muscle reaches or leaves a bound.  If the next step
+    treated that muscle as fixed, the two steps could alternate without end.  It is therefore
+    treated as free; the step stays an ascent direction.
     """
     multiplier = point.multiplier
     begin, step = np.empty_like(multiplier), np.empty_like(multiplier)
@@ -289,10 +289,10 @@ def _maximise(
 
 @njit(error_model='numpy')
 def _refine(problem: _Problem, point: _Iterate, b: float) -> tuple[float, float]:
-    """Take off what rounding left of the balance; give b and what is left.
+    """Reduce the rounding error of the balance; return b and the remaining error.
 
     Changes are added to the activations: to divide the whole pull by the small curvature again
-    would lose them anew.
+    would lose them again.
     """
     worst = _unbalanced(problem, point)
     n_m = point.pull.size

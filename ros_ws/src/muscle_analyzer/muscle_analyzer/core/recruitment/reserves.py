@@ -16,7 +16,7 @@ from importlib.resources.abc import Traversable
 
 from muscle_analyzer.core.exceptions import OptionError
 
-#: What a row of the table may say drives a coordinate.
+#: Values of the column that distinguishes muscle-driven coordinates from others.
 _DRIVERS = {'muscles': True, 'reserve': False}
 
 

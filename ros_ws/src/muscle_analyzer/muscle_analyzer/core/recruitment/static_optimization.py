@@ -3,8 +3,8 @@
 """Static optimisation: which muscle forces balance the joint torques (equation 4.10).
 
 The sum of squared activations is minimised, or another criterion of muscle recruitment; reserve
-actuators make the balance possible in every frame, are paid for by their square in the same cost,
-and name the coordinate when muscles are too weak.
+actuators make the balance possible in every sample, their squares are part of the same cost,
+and they identify the coordinates whose muscles are too weak.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ from muscle_analyzer.core.recruitment.reserves import Reserve
 #: Smallest activation OpenSim 4.6 allows a muscle in static optimisation (``min_control`` of
 #: the muscles of the lifting full-body model).
 MINIMUM_ACTIVATION = 0.01
-#: An activation nearer than this to its bound is at it: interior-point solutions come close.
+#: An activation nearer than this to its bound is at it: interior-point solutions only approach it.
 AT_BOUND = 1e-8
-#: So many coordinates or muscles are named in a report.
+#: Largest number of coordinates or muscles named in a report.
 NAMED = 3
 
 

@@ -27,7 +27,7 @@ class MuscleWeighting(StrEnum):
 
 
 def muscle_weights(muscles: MuscleParameters, weighting: str) -> Array:
-    """Give the weights (n_m,) of the muscles; their mean is 1.
+    """Return the weights (n_m,) of the muscles; their mean is 1.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def muscle_weights(muscles: MuscleParameters, weighting: str) -> Array:
 
 
 def least_activations(muscle_names: tuple[str, ...], abdominal: float) -> Array:
-    """Give the least activations (n_m,) of the muscles.
+    """Return the least activations (n_m,) of the muscles.
 
     Static optimisation never lets an antagonist work more than it must.  People brace: a least
     activation of the abdominal muscles (`data/abdominal_muscles.csv`), for example one measured by

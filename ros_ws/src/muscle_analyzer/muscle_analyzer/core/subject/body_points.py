@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Where the shared body points and frames are in a musculoskeletal model, and its scale factors.
+"""Shared body points and frames on a musculoskeletal model, and its scale factors.
 
-`data/body_points.csv` says for every shared point which body carries it. A point is a joint's
+`data/body_points.csv` has the body that carries each shared point. A point is a joint's
 centre (`joint`), the middle of two (`middle`), or is carried by a body at the place that the
 subject's own point has relative to a joint in upright standing (`registered`), as markers are
 registered: so hands and feet have the subject's dimensions exactly. Registration is in upright

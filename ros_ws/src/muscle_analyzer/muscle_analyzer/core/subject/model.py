@@ -94,7 +94,7 @@ def subject_model(
     mass : float
         kg.
     force_factors : array (n_muscles,), optional
-        What the muscles' maximum isometric forces are multiplied with (`muscle_strength`).
+        Factors of the muscles' maximum isometric forces (`muscle_strength`).
     segments : mapping of str to SegmentMass, optional
         Masses of the subject's segments in the same posture; without them the body mass is
         distributed as in the generic model.

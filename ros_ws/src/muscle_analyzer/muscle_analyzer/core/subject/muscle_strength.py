@@ -33,7 +33,7 @@ from muscle_analyzer.core.osim.model import OsimModel
 
 #: Angles over which the largest strength is looked for [rad]: beyond any joint's range.
 _ANGLES = np.linspace(-np.pi, np.pi, 721)
-#: Age of a row of `strength_muscles.csv` whose joint strength knows ages of its own.
+#: Age of a row of `strength_muscles.csv` whose joint strength already depends on age.
 _JOINT = 'joint'
 
 
@@ -71,7 +71,7 @@ class StrengthOptions:
 
 
 def force_factors(model: OsimModel, subject: Subject, options: StrengthOptions) -> Array:
-    """Give what the maximum isometric force of each muscle (n_m,) is multiplied with.
+    """Return what the maximum isometric force of each muscle (n_m,) is multiplied with.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ def force_factors(model: OsimModel, subject: Subject, options: StrengthOptions) 
 
 
 def reference_person() -> Subject:
-    """Give the person whose muscles the generic model has."""
+    """Return the person whose muscles the generic model has."""
     (row,) = _table('reference_person')
     return Subject(
         'reference', row['sex'], float(row['mass']), float(row['stature']), float(row['age']),
@@ -120,12 +120,12 @@ def reference_person() -> Subject:
 
 
 def ageing_names() -> tuple[str, ...]:
-    """Give the names of the known courses of ageing."""
+    """Return the names of the known courses of ageing."""
     return tuple(row['name'] for row in _table('strength_ageing'))
 
 
 def _ageing(name: str, age: float) -> float:
-    """Give the share of the strength of youth that is left."""
+    """Return the strength as a fraction of that in youth."""
     for row in _table('strength_ageing'):
         if row['name'] == name:
             first, last = float(row['from_age']), float(row['to_age'])
@@ -136,7 +136,7 @@ def _ageing(name: str, age: float) -> float:
 
 
 def _isometric(bound: StrengthBound) -> float:
-    """Give the largest strength at rest over the angle [N m]."""
+    """Return the largest strength at rest over the angle [N m]."""
     largest = np.max(surface(bound.coefficients, _ANGLES, 0.0))
     return abs(bound.magnitude) * float(largest)
 

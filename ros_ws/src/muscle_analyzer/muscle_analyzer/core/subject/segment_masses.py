@@ -4,8 +4,8 @@
 
 The lifting full-body model carries the mass of head, arms and trunk lower (0.21 m above L5-S1
 for a stature of 1.756 m) than people measured by others (0.29 m by Dumas et al. 2007 and 2015,
-0.28 m by de Leva 1996), so the two models of one person ask for different moments at L5-S1 when it
-bends. `data/segment_bodies.csv` says which bodies make up a segment. Their masses are multiplied
+0.28 m by de Leva 1996), so the two models of one person need different moments at L5-S1 when it
+bends. `data/segment_bodies.csv` lists the bodies of each segment. Their masses are multiplied
 by one factor and their mass centres shifted together, in upright standing, until both are the
 segment's; their inertia tensors follow the masses and keep their shape.
 """
@@ -33,7 +33,7 @@ from muscle_analyzer.core.subject.body_points import upright_state
 
 
 class MassDistribution(StrEnum):
-    """Whose share of the body mass each segment has, and where.
+    """Source of the segments' masses and mass centres.
 
     `model` keeps the proportions of the musculoskeletal model; `segments` takes masses and
     centres of mass of the skeleton (`human_model`: Dumas et al. 2007, 2015).

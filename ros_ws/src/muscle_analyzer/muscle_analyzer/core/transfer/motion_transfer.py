@@ -1,18 +1,18 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Takes a motion over from a skeleton of `human_model` to the musculoskeletal model.
+"""Transfers a motion from a skeleton of `human_model` to the musculoskeletal model.
 
 The two have different joints, so angles are not copied (the thesis does, section 4.1.2): the
-second model is fitted, frame by frame, to the first one's joint centres, hands, feet and trunk.
-Hands, feet and the trunk's orientation weigh most, because the box's and the ground's lever arms
-hang on them.
+second model is fitted, sample by sample, to the first one's joint centres, hands, feet and trunk.
+Hands, feet and the trunk's orientation weigh most, because the lever arms of box and ground
+depend on them.
 
 Velocities and accelerations come from those of the skeleton's points by least squares
 (`map_rates`): the same way live and for a recorded lift, and without a filter, so without further
 delay.
 
-The coordinates of the sagittal skeleton say where it is in its own plane; its points and frames
-say where in the laboratory. A turn about the vertical and a shift lead from the one to the other.
+The coordinates of the sagittal skeleton give its place in its own plane; its points and frames
+give the place in the laboratory. A turn about the vertical and a shift relate the two.
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ from muscle_analyzer.core.transfer.skeleton_state import SkeletonMotion
 # The skeletons have no neck: the head stays as it is on the thorax.
 FIXED_COORDINATES = ('neck_flexion', 'neck_bending', 'neck_rotation')
 # The limbs' coordinates have the same names and meanings in both models: a weak pull to the
-# skeleton's values decides what the points leave open. So many radians weigh as much as one sigma
-# of a point.
+# skeleton's values determines what the points do not. This many radians weigh as much as one
+# sigma of a point.
 REFERENCE_SIGMA = 0.2
 PELVIS_COORDINATES = (
     'pelvis_tx', 'pelvis_ty', 'pelvis_tz', 'pelvis_tilt', 'pelvis_list', 'pelvis_rotation',
@@ -184,31 +184,31 @@ class MotionTransfer:
             tolerance=TOLERANCE,
             max_iterations=MAX_ITERATIONS,
         )
-        # Turned over to the compiled functions once; a motion's columns while its names stay.
+        # Boxed once; a motion's columns are kept while its names stay the same.
         self._boxed = boxed(self._setup)
         self._given: tuple[tuple[str, ...], ...] = ()
         self._columns = (which_points, which_points)
         self._start = np.full(len(names), np.nan)
 
     def reset(self) -> None:
-        """Forget the last pose; the next fit starts from the skeleton's coordinates."""
+        """Clear the last pose; the next fit starts from the skeleton's coordinates."""
         self._start = np.full_like(self._start, np.nan)
 
     def step(self, motion: BodyMotion, sample: int = 0) -> TransferredPose:
-        """Take over one sample; the fit starts from the sample before.
+        """Transfer one sample; the fit starts from the sample before.
 
         Raises
         ------
         TransferError
             If the motion is of another skeleton, or its points are not those of this subject.
         """
-        return self._taken_over(motion, slice(sample, sample + 1)).pose(0)
+        return self._transfer(motion, slice(sample, sample + 1)).pose(0)
 
     def block(self, motion: BodyMotion) -> TransferredMotion:
-        """Take over all samples, one after the other; see `step`."""
-        return self._taken_over(motion, slice(None))
+        """Transfer all samples, one after the other; see `step`."""
+        return self._transfer(motion, slice(None))
 
-    def _taken_over(self, motion: BodyMotion, samples: slice) -> TransferredMotion:
+    def _transfer(self, motion: BodyMotion, samples: slice) -> TransferredMotion:
         if motion.coordinates != self.skeleton.coordinates:
             raise TransferError(
                 f'motion of skeleton {motion.skeleton!r} does not have the coordinates of '

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Small dense least squares, compiled: normal equations and Cholesky's method.
 
-Written out instead of called from a library: for some forty unknowns a call costs as much as the
-work, and a body's point hangs on few of a tree's coordinates: most rows of a product are zero.
+Not from a library: for some forty unknowns a library call takes as long as the computation, and a
+body's point depends on few of a tree's coordinates, so that most entries are zero.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from human_model.typing import Array, IntArray
 def normal_equations(jacobian: Array, residual: Array) -> tuple[Array, Array]:
     """Return J^T J (n, n) and J^T r (n,) of a Jacobian (3 m, n) and a residual (3 m,).
 
-    Rows come in threes that hang on the same unknowns: the axes of a point or a rotation.
+    Rows come in threes that depend on the same unknowns: the axes of a point or a rotation.
     """
     n = jacobian.shape[1]
     normal, gradient = np.zeros((n, n)), np.zeros(n)
@@ -53,10 +53,10 @@ def transposed_times(matrix: Array, vector: Array) -> Array:
 def factorise(matrix: Array) -> bool:
     """Write U of a positive definite matrix U^T U (n, n) into its upper triangle; False if not.
 
-    What is below the diagonal is lost.
+    Entries below the diagonal are overwritten.
     """
     n = matrix.shape[0]
-    # A copy of the row that is taken from those below: only so do the loops run in steps of four.
+    # A copy of the row that is subtracted from those below: it lets the compiler vectorise.
     row = np.empty(n)
     for k in range(n):
         if not matrix[k, k] > 0.0:

@@ -191,9 +191,9 @@ def fit_pose(
     n_m = 3 * (targets.point_body.size + targets.frame_body.size)
     jacobian, spatial = np.empty((n_m, n_q)), np.empty((tree.parent.size, 6, n_q))
     residual, left = np.empty(n_m), np.empty(n_m)
-    room, state = allocate_kinematics(tree)
-    other_room, there = allocate_kinematics(tree)
-    compute_kinematics(tree, q, zero, zero, room, state)
+    workspace, state = allocate_kinematics(tree)
+    other_workspace, there = allocate_kinematics(tree)
+    compute_kinematics(tree, q, zero, zero, workspace, state)
     set_misfit(targets, state, residual)
     cost = _cost(targets, residual, q)
     relative_damping = _FIRST_DAMPING
@@ -224,7 +224,7 @@ def fit_pose(
                 elif step[k] == lower[k] - q[k]:
                     trial[k] = lower[k]
             size = np.max(np.abs(trial - q))
-            compute_kinematics(tree, trial, zero, zero, other_room, there)
+            compute_kinematics(tree, trial, zero, zero, other_workspace, there)
             set_misfit(targets, there, left)
             trial_cost = _cost(targets, left, trial)
             if trial_cost <= cost or size < tolerance:
@@ -236,7 +236,7 @@ def fit_pose(
         flat = flat + 1 if cost - trial_cost < FLAT_COST else 0
         if trial_cost <= cost:
             q, cost = trial, trial_cost
-            room, other_room = other_room, room
+            workspace, other_workspace = other_workspace, workspace
             state, there = there, state
             residual, left = left, residual
         if size < tolerance or flat == FLAT_STEPS:

@@ -100,7 +100,7 @@ def set_misfit_jacobian(
 ) -> None:
     """Write the derivative (3 n_p + 3 n_f, n_q) of `misfit`, of rotations to first order.
 
-    `spatial` is room for the Jacobians (n_b, 6, n_q) of the bodies.
+    `spatial` is a workspace for the Jacobians (n_b, 6, n_q) of the bodies.
     """
     set_jacobians(tree, state, spatial)
     rotation, position = state.rotation, state.position

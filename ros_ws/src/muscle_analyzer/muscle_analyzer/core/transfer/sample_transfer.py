@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Frame after frame of a skeleton's motion onto the musculoskeletal model, compiled.
+"""Transfer of the samples of a skeleton's motion to the musculoskeletal model, compiled.
 
-What is done, and why, stands in `motion_transfer`.
+`motion_transfer` describes the method.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from muscle_analyzer.core.transfer.skeleton_state import (
 
 
 class TransferSetup(NamedTuple):
-    """Both models and how they belong together.
+    """Both models and their relation.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class TransferSetup(NamedTuple):
     frame_body : (n_f,) int array
         Bodies of the frames.
     targets : Targets
-        With everything that is the same in all frames.
+        With everything that is the same in all samples.
     upright : (n_f, 3, 3) array
         See `body_points.BodyPoints.frame_upright`.
     upright_q : (n_q,) array
@@ -83,7 +83,7 @@ class TransferSetup(NamedTuple):
 
 
 class TransferredSamples(NamedTuple):
-    """Frames on the musculoskeletal model; see `motion_transfer.TransferredMotion`.
+    """Samples on the musculoskeletal model; see `motion_transfer.TransferredMotion`.
 
     Attributes
     ----------
@@ -104,7 +104,7 @@ class TransferredSamples(NamedTuple):
 
 @njit
 def _allocate_samples(n: int, n_q: int, n_p: int, n_f: int) -> TransferredSamples:
-    """Give room for n frames."""
+    """Return arrays for n samples."""
     return TransferredSamples(
         np.empty((n, n_q)),
         np.empty((n, n_q)),
@@ -146,7 +146,7 @@ def _distances(
         away[i, 0] = c * x - s * y - place[i, 0]
         away[i, 1] = s * x + c * y - place[i, 1]
         away[i, 2] = z - place[i, 2]
-    # Where in the laboratory a sagittal plane is stands open; the height is a coordinate.
+    # The place of a sagittal plane in the laboratory is arbitrary; the height is a coordinate.
     x0 = away[setup.pelvis, 0] if setup.sagittal else 0.0
     y0 = away[setup.pelvis, 1] if setup.sagittal else 0.0
     for i in range(place.shape[0]):
@@ -155,7 +155,7 @@ def _distances(
 
 @njit
 def _set_targets(setup: TransferSetup, place: Array, frames: Array, position: Array) -> None:
-    """Write a frame's places into the targets: points, frames and reference values."""
+    """Write a sample into the targets: points, frames and reference values."""
     point, frame, reference = setup.targets.point, setup.targets.frame, setup.targets.reference
     for i in range(place.shape[0]):
         point[i, 0], point[i, 1], point[i, 2] = place[i, 0], place[i, 2], -place[i, 1]
@@ -197,7 +197,7 @@ def _rates(
 
 @njit
 def _first(setup: TransferSetup) -> Array:
-    """Return a start without a frame before: the target pelvis, the skeleton's limbs."""
+    """Return a start without a sample before: the target pelvis, the skeleton's limbs."""
     targets = setup.targets
     start = setup.fixed.copy()
     for k in range(start.size):
@@ -235,7 +235,7 @@ def _set_remaining(targets: Targets, off: Array, distance: Array, angle: Array) 
 def transfer_samples(
     boxed: Boxed[TransferSetup], motion: SkeletonMotion, start: Array, same_point: float
 ) -> tuple[int, TransferredSamples]:
-    """Take frame after frame over, each from the one before.
+    """Transfer sample after sample, each fit starting from the one before.
 
     Parameters
     ----------
@@ -243,16 +243,16 @@ def transfer_samples(
         Its targets are changed.
     motion : SkeletonMotion
     start : (n_q,) array
-        Coordinates to start from, NaN without a frame before; on return those to go on from.
+        Coordinates to start from, NaN without a sample before; updated.
     same_point : float
         Distance up to which the motion's points are those of the skeleton, m.
 
     Returns
     -------
     done : int
-        Number of frames taken over: the next one's points are not those of the skeleton.
+        Number of transferred samples: the next one's points are not those of the skeleton.
     out : TransferredSamples
-        Of these frames.
+        Of these samples.
     """
     setup = boxed.content
     targets = setup.targets

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""A skeleton's motion as the transfer takes it over: points and frames of a frame, compiled."""
+"""Points and frames of a skeleton in one sample of its motion, compiled."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class SkeletonState(NamedTuple):
 
 
 class SkeletonMotion(NamedTuple):
-    """Frames of a skeleton's motion; see `human_model.motion.BodyMotion`.
+    """Samples of a skeleton's motion; see `human_model.motion.BodyMotion`.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ class SkeletonMotion(NamedTuple):
 
 @njit
 def set_frame(motion: SkeletonMotion, k: int, place: Array, frames: Array) -> None:
-    """Write places (n_p, 3) and rotation matrices (n_f, 3, 3) of a frame of the motion."""
+    """Write places (n_p, 3) and rotation matrices (n_f, 3, 3) of a sample of the motion."""
     for i in range(place.shape[0]):
         for j in range(3):
             place[i, j] = motion.points[k, motion.point_column[i], j]
