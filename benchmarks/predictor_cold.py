@@ -18,17 +18,15 @@ from typing import Final
 REPEATS: Final = 20
 CODE: Final = """
 from human_model.named_subjects import named_subject
-from lift_predictor.core.planning.build import build_plan
-from lift_predictor.core.planning.plan_task import PlanTask
+from lift_predictor.core.planning.plan_task import Feet, PlanTask
 from lift_predictor.core.predictor import LiftPredictor
 
-predictor = LiftPredictor()
-predictor.configure(named_subject('thesis_ch4'))
+solver = LiftPredictor().sagittal
 task = PlanTask(
     'cold', 7.0, (0.238, 0.305, 0.127), (0.369, 0.0, 0.25), (0.5, 0.0, 0.9), feet=(0.0, 0.0)
 )
-plan = build_plan(predictor.person, task)
-prediction = predictor.solve_task(plan.task, plan.starts(predictor.programme.grid.spline, 2))
+plan = solver.model.plan(named_subject('thesis_ch4'), task, Feet(0.0, 0.0))
+prediction = solver.solve(plan.task, solver.model.plan_starts(plan, 2))
 if not prediction.report.ok:
     raise SystemExit(prediction.report.message)
 print(prediction.report.objective)

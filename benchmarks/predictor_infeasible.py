@@ -19,9 +19,9 @@ from benchmarks.random_tasks import STRENGTH_Z, plan_random
 
 from human_model.report import SolveStatus
 from human_model.subject import Subject
-from lift_predictor.core.maximum_weight import heaviest_box, open_mass
 from lift_predictor.core.planning.plan_task import PlanTask
-from lift_predictor.core.planning.planner import STARTS, LiftPlanner
+from lift_predictor.core.planning.planner import LiftPlanner
+from lift_predictor.core.problem.maximum_weight import heaviest_box, open_mass
 
 N_TASKS: Final = 50
 SEED: Final = 94110
@@ -43,13 +43,12 @@ def make_infeasible(
             return subject, replace(task, end=(*task.end[:2], BEYOND[0] * subject.stature))
         if way == 'reach too far':
             return subject, replace(task, end=(BEYOND[1] * subject.stature, *task.end[1:]))
-        predictor = planner.predictor
-        predictor.configure(subject)
-        starts = plan.starts(predictor.programme.grid.spline, STARTS)
-        heaviest = heaviest_box(predictor, open_mass(plan.task), starts)
+        solver = planner.predictor.sagittal
+        starts = solver.model.plan_starts(plan, solver.model.plan_starts_limit)
+        heaviest = heaviest_box(solver, open_mass(plan.task), starts)
         if heaviest.report.ok:
             # The best of all runs at the nodes: the margin that follows only takes away.
-            most = max(run.box_mass for run in heaviest.prediction.optima)
+            most = max(run.box_mass for run in heaviest.prediction.runs)
             return subject, replace(task, box_mass=OVERLOAD * most)
 
 

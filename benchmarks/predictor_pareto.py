@@ -22,7 +22,6 @@ from bags.simulate.group import lifting_task, simulated_lift, study_group
 from human_model.motion import Lift
 from human_model.subject import Subject
 from human_model.typing import Array
-from lift_predictor.core.maximum_weight import Weighting, maximum_weight_task
 from lift_predictor.core.pareto import (
     ParetoCurve,
     TotalError,
@@ -32,8 +31,8 @@ from lift_predictor.core.pareto import (
 )
 from lift_predictor.core.percentile import Percentile, percentile_by_root
 from lift_predictor.core.predictor import LiftPredictor
-from lift_predictor.core.sagittal.starts import make_starts
-from lift_predictor.core.sagittal.task import Box
+from lift_predictor.core.problem.maximum_weight import Weighting
+from lift_predictor.core.problem.task import Box
 
 TASK: Final = 'symmetric_max'
 CORES: Final = 2
@@ -126,20 +125,17 @@ def find_man(subject: Subject, weighting: Weighting) -> Man:
     PercentileError
         There is none.
     """
-    predictor = _worker()
-    predictor.configure(subject)
     lift = simulated_lift(subject, lifting_task(TASK))
-    found = percentile_by_root(predictor, lift, task_box(), weighting)
+    found = percentile_by_root(_worker(), subject, lift, task_box(), weighting)
     fields = subject.to_dict() | {'strength_z': found.z_score}
     return Man(Subject.from_dict(fields), lift, found)
 
 
 def curve_of(man: Man) -> ParetoCurve:
     """Solve a man's 21 weightings."""
-    predictor = _worker()
-    predictor.configure(man.subject)
-    task = maximum_weight_task(predictor, man.lift, task_box())
-    return pareto_curve(predictor, task, make_starts(task, predictor.programme.grid.spline))
+    solver = _worker().sagittal
+    task = solver.model.maximum_weight_task(man.subject, man.lift, task_box())
+    return pareto_curve(solver, task, solver.model.starts(task))
 
 
 def solve_man(man: Man) -> Case:

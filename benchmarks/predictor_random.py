@@ -27,9 +27,11 @@ from benchmarks.random_referee import N_STARTS, RefereeStore
 from benchmarks.random_tasks import plan_random
 from benchmarks.solved_lifts import EQUAL
 
-from lift_predictor.core.predictor import LiftPredictor
-from lift_predictor.core.sagittal.verify import verify
-from lift_predictor.core.solvers.solver_run import best_objective
+from lift_predictor.core.models.sagittal.lift_model import SagittalModel
+from lift_predictor.core.models.sagittal.task import SagittalTask
+from lift_predictor.core.models.sagittal.verify import verify
+from lift_predictor.core.problem.run import best_objective
+from lift_predictor.core.problem.task_solver import TaskSolver
 
 N_TASKS: Final = 200
 SEED: Final = 2026
@@ -80,29 +82,26 @@ class Case:
 
 
 @cache
-def _tools() -> tuple[LiftPredictor, RefereeStore]:
-    predictor = LiftPredictor()
-    return predictor, RefereeStore(predictor.programme)
+def _tools() -> tuple[TaskSolver[SagittalTask], SagittalModel, RefereeStore]:
+    model = SagittalModel()
+    return TaskSolver(model), model, RefereeStore(model)
 
 
 def solve_case(number: int) -> Case:
     """Solve a task of a seed of its own with the predictor and with the referee."""
-    predictor, store = _tools()
-    grid = predictor.programme.grid
-    subject, _, plan = plan_random(np.random.default_rng((SEED, number)))
-    predictor.configure(subject)
-    prediction = predictor.solve_task(plan.task, plan.starts(grid.spline, STARTS))
+    solver, model, store = _tools()
+    _, _, plan = plan_random(np.random.default_rng((SEED, number)))
+    prediction = solver.solve(plan.task, model.plan_starts(plan, STARTS))
     violations, given = 0, float('nan')
     if prediction.report.ok:
-        best = prediction.optima[0]
+        best = prediction.runs[0]
         given = best.objective
         parameters = replace(plan.task.parameters, box_mass=best.box_mass)
-        report = predictor.programme.report
-        check = verify(report, grid, best.control, parameters, plan.task.bounds)
+        check = verify(model.library, model.grid, best.control, parameters, plan.task.bounds)
         violations = len(check.failures().split(';')) if check.failures() else 0
     # A margin only takes motions away: a run with one is a motion of the task too.
-    own = best_objective(prediction.optima)
-    referee = store.find(number, plan.task.parameters.pack(), plan.task.bounds)
+    own = best_objective(prediction.runs)
+    referee = store.find(number, plan.task)
     return Case(
         number, prediction.report.ok, violations, own, given, referee.best,
         len(referee.objective), prediction.report.message,

@@ -15,24 +15,27 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Final
+from typing import Final, TypeVar
 
 import numpy as np
 from bags.simulate.group import lifting_task, simulated_lift, study_group
 from benchmarks.predictor_pareto import find_man, task_box
 
 from human_model.named_subjects import named_subject
-from lift_predictor.core.maximum_weight import Weighting, heaviest_box, maximum_weight_task
+from lift_predictor.core.models.sagittal.grid import LiftBounds
+from lift_predictor.core.models.sagittal.lift_model import COLD, SagittalModel
+from lift_predictor.core.models.sagittal.task import SagittalTask
 from lift_predictor.core.predictor import LiftPredictor
-from lift_predictor.core.sagittal.grid import LiftBounds
-from lift_predictor.core.sagittal.optimiser import LIFT_OPTIONS, LiftOptimiser
-from lift_predictor.core.sagittal.starts import make_starts
-from lift_predictor.core.sagittal.task import Box, LiftTask2D, build_task
+from lift_predictor.core.problem.maximum_weight import Weighting, heaviest_box
+from lift_predictor.core.problem.run import SolverRun, Start
+from lift_predictor.core.problem.task import Box
+from lift_predictor.core.problem.task_solver import TaskSolver
 from lift_predictor.core.solvers.compiled import build_programme
 from lift_predictor.core.solvers.ipopt import LiftSolver
 from lift_predictor.core.solvers.solve import solve
-from lift_predictor.core.solvers.solver_run import SolverRun, Start
+from lift_predictor.core.solvers.solver_run import SolverRun as ReferenceRun
 
+Run = TypeVar('Run', SolverRun, ReferenceRun)
 REPEATS: Final = 25
 SUBJECT: Final = 'thesis_ch4'
 LIFTS: Final = {'2d_fixed_7kg': 'symmetric_7kg', '2d_fixed_12kg': 'symmetric_12kg'}
@@ -45,7 +48,7 @@ WARM_SHIFT: Final = 0.002
 """From one warm solve to the next the mass changes by at most 50 g, the end place by 2 mm."""
 
 
-def timed(run: Callable[[], SolverRun], repeats: int) -> tuple[SolverRun, float, float]:
+def timed(run: Callable[[], Run], repeats: int) -> tuple[Run, float, float]:
     """Median wall and processor time [ms] of repeated solves, and the last result."""
     wall, processor = [], []
     for _ in range(repeats):
@@ -58,16 +61,21 @@ def timed(run: Callable[[], SolverRun], repeats: int) -> tuple[SolverRun, float,
     return result, 1e3 * float(np.median(wall)), 1e3 * float(np.median(processor))
 
 
-def pair(key: str, own: LiftOptimiser, referee: LiftSolver, task: LiftTask2D, start: Start
-         ) -> dict[str, float]:  # fmt: skip
+def pair(
+    key: str,
+    own: TaskSolver[SagittalTask],
+    referee: LiftSolver,
+    task: SagittalTask,
+    start: Start,
+) -> dict[str, float]:
     """Time both solvers on one task."""
     vector, bounds = task.parameters.pack(), task.bounds
-    mine, wall, cpu = timed(lambda: own.solve(vector, bounds, start), REPEATS)
+    mine, wall, cpu = timed(lambda: own.run(task, start), REPEATS)
     other, ipopt_wall, ipopt_cpu = timed(lambda: referee.solve(vector, bounds, start), REPEATS)
     if abs(mine.objective - other.objective) > SAME * abs(other.objective):
         print(f'{key}: another minimum: {mine.objective:.6f}, IPOPT {other.objective:.6f}')
     return {
-        f'{key}_ms': wall, f'{key}_cpu_ms': cpu, f'{key}_iterations': mine.iterations,
+        f'{key}_ms': wall, f'{key}_cpu_ms': cpu, f'{key}_iterations': mine.solution.iterations,
         f'ipopt_{key}_ms': ipopt_wall, f'ipopt_{key}_cpu_ms': ipopt_cpu,
         f'ipopt_{key}_iterations': other.iterations,
     }  # fmt: skip
@@ -81,18 +89,20 @@ def changed(bounds: LiftBounds, step: int, rng: np.random.Generator) -> LiftBoun
     return replace(bounds, box_mass=mass, hand=hand)
 
 
-def warm(own: LiftOptimiser, referee: LiftSolver, task: LiftTask2D, start: Start
-         ) -> dict[str, float]:  # fmt: skip
+def warm(
+    own: TaskSolver[SagittalTask], referee: LiftSolver, task: SagittalTask, start: Start
+) -> dict[str, float]:
     """Rate of solves that begin with the solution of the task before."""
     rng, vector, bounds = np.random.default_rng(1), task.parameters.pack(), task.bounds
     x0 = np.append(start.control, start.box_mass)
-    solution = solve(own.programme(vector, bounds), x0, LIFT_OPTIONS)
+    solution = solve(own.model.nlp(task), x0, COLD)
     wall, cpu, other, failed = [], [], [], 0
     last = referee.solve(vector, bounds, start)
     for step in range(WARM_STEPS):
         bounds = changed(bounds, step, rng)
+        task = replace(task, bounds=bounds)
         begin, begin_cpu = time.perf_counter(), time.process_time()
-        solution = solve(own.programme(vector, bounds), solution.x, LIFT_OPTIONS, solution)
+        solution = solve(own.model.nlp(task), solution.x, COLD, solution)
         cpu.append(time.process_time() - begin_cpu)
         wall.append(time.perf_counter() - begin)
         begin = time.perf_counter()
@@ -119,36 +129,33 @@ def run() -> Mapping[str, float]:
     """
     subject = named_subject(SUBJECT)
     predictor = LiftPredictor()
-    predictor.configure(subject)
-    own = predictor.programme
-    assert predictor.person is not None
-    referee = LiftSolver(build_programme(own.grid), 60.0)
+    own = predictor.sagittal
+    model = SagittalModel()
+    referee = LiftSolver(build_programme(model.grid), 60.0)
     result: dict[str, float] = {}
     for key, name in LIFTS.items():
         described = lifting_task(name)
         box = Box(described.box_mass, described.box_size[0])
-        task = build_task(predictor.person, simulated_lift(subject, described), box)
-        start = smooth_step(task, own)
+        task = model.recorded_task(subject, simulated_lift(subject, described), box)
+        start = smooth_step(task, model)
         result |= pair(key, own, referee, task, start)
     result |= warm(own, referee, task, start)
     man = find_man(study_group()[0], Weighting())
-    predictor.configure(man.subject)
-    task = maximum_weight_task(predictor, man.lift, task_box())
-    starts = make_starts(task, own.grid.spline)
-    scale = heaviest_box(predictor, task, starts).normalisation
+    task = model.maximum_weight_task(man.subject, man.lift, task_box())
+    scale = heaviest_box(own, task, model.starts(task)).normalisation
     if scale is None:
         raise RuntimeError('no heaviest box: the objective cannot be normalised')
     weighting = Weighting()
     objective = np.array([weighting.effort / scale.effort, weighting.box / scale.log_weight])
     task = replace(task, parameters=replace(task.parameters, objective=objective))
-    start = replace(smooth_step(task, own), box_mass=task_box().mass)
+    start = replace(smooth_step(task, model), box_mass=task_box().mass)
     result |= pair('2d_max', own, referee, task, start)
     return result
 
 
-def smooth_step(task: LiftTask2D, own: LiftOptimiser) -> Start:
+def smooth_step(task: SagittalTask, model: SagittalModel) -> Start:
     """Start that owes nothing to the recorded motion but its end postures."""
-    starts = {start.name: start for start in make_starts(task, own.grid.spline)}
+    starts = {start.name: start for start in model.starts(task)}
     return replace(starts[SMOOTH_STEP], box_mass=float(task.bounds.box_mass[0]))
 
 

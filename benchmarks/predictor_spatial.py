@@ -30,20 +30,20 @@ from human_model.motion import BodyMotion, Lift
 from human_model.named_subjects import named_subject
 from human_model.report import SolveReport
 from lift_predictor.core.exceptions import LiftPredictorError
-from lift_predictor.core.maximum_weight import Weighting
-from lift_predictor.core.sagittal.task import Box
+from lift_predictor.core.models.spatial.frame import StanceFrame
+from lift_predictor.core.models.spatial.lift_model import FAR, SOLVER_OPTIONS, SpatialModel
+from lift_predictor.core.models.spatial.person import SpatialPerson
+from lift_predictor.core.models.spatial.postures import PostureFinder
+from lift_predictor.core.models.spatial.task import PlacedBox, SpatialTask, place_task
+from lift_predictor.core.models.spatial.verify import TOLERANCE
+from lift_predictor.core.options import PredictorOptions
+from lift_predictor.core.predictor import LiftPredictor
+from lift_predictor.core.problem.maximum_weight import Weighting, maximum_weight
+from lift_predictor.core.problem.run import Start
+from lift_predictor.core.problem.task import Box
+from lift_predictor.core.problem.task_solver import HOP_SPREAD, TaskSolver
 from lift_predictor.core.solvers.solution import Solution
 from lift_predictor.core.solvers.solve import solve
-from lift_predictor.core.spatial.frame import StanceFrame
-from lift_predictor.core.spatial.maximum_weight import FAR, maximum_weight, open_mass
-from lift_predictor.core.spatial.multistart import displaced
-from lift_predictor.core.spatial.person import SpatialPerson
-from lift_predictor.core.spatial.postures import PostureFinder
-from lift_predictor.core.spatial.predictor import SpatialPredictor
-from lift_predictor.core.spatial.programme import spatial_programme
-from lift_predictor.core.spatial.starts import SpatialStart, recorded_starts
-from lift_predictor.core.spatial.task import PlacedBox, SpatialTask, place_task
-from lift_predictor.core.spatial.verify import TOLERANCE
 
 ROOT: Final = Path(__file__).resolve().parents[1]
 REPEATS: Final = 20
@@ -86,30 +86,27 @@ def recorded_lift(name: str) -> Lift:
 
 
 def single(
-    predictor: SpatialPredictor, task: SpatialTask, x0: Any, warm: Solution | None = None,
+    model: SpatialModel, task: SpatialTask, x0: Any, warm: Solution | None = None,
     barrier: float | None = None,
 ) -> Solution:  # fmt: skip
     """One solve, without the check between the nodes."""
-    programme = spatial_programme(
-        predictor.assembler, predictor.grid, task.parameters, task.bounds
-    )
-    x0 = np.clip(x0, programme.lower, programme.upper)
-    return solve(programme, x0, predictor.options.interior_point(barrier), warm)
+    nlp = model.nlp(task)
+    x0 = np.clip(x0, nlp.lower, nlp.upper)
+    options = replace(SOLVER_OPTIONS, barrier=barrier or SOLVER_OPTIONS.barrier)
+    return solve(nlp, x0, options, warm)
 
 
-def pair(
-    key: str, predictor: SpatialPredictor, task: SpatialTask, start: SpatialStart
-) -> dict[str, float]:
+def pair(key: str, model: SpatialModel, task: SpatialTask, start: Start) -> dict[str, float]:
     """Time both solvers on one task."""
-    wall, cpu, x0 = [], [], start.variables()
+    wall, cpu, x0 = [], [], model.variables(task, start)
     for _ in range(REPEATS):
         begin, begin_cpu = time.perf_counter(), time.process_time()
-        mine = single(predictor, task, x0, barrier=start.barrier)
+        mine = single(model, task, x0, barrier=start.barrier)
         cpu.append(time.process_time() - begin_cpu)
         wall.append(time.perf_counter() - begin)
     if not mine.ok:
         raise RuntimeError(f'{key}: {mine.status} {mine.violated}')
-    referee, other_wall = Referee(predictor, task, x0, start.barrier), []
+    referee, other_wall = Referee(model, task, x0, start.barrier), []
     for _ in range(IPOPT_REPEATS):
         begin = time.perf_counter()
         other = referee.solve(x0)
@@ -135,24 +132,24 @@ def changed(task: SpatialTask, rng: np.random.Generator) -> SpatialTask:
     return replace(task, bounds=replace(task.bounds, hand=hand, box_mass=mass))
 
 
-def warm(predictor: SpatialPredictor, task: SpatialTask, x0: Any) -> dict[str, float]:
+def warm(model: SpatialModel, task: SpatialTask, x0: Any) -> dict[str, float]:
     """Rates of solves that begin with the solution of the task before, ours and IPOPT's."""
-    rng, solution = np.random.default_rng(1), single(predictor, task, x0)
+    rng, solution = np.random.default_rng(1), single(model, task, x0)
     wall, cpu, steps = [], [], []
     first, first_x, tasks = task, solution.x, []
     for _ in range(WARM_STEPS):
         task = changed(task, rng)
         tasks.append(task)
         begin, begin_cpu = time.perf_counter(), time.process_time()
-        solution = single(predictor, task, solution.x, solution)
+        solution = single(model, task, solution.x, solution)
         cpu.append(time.process_time() - begin_cpu)
         wall.append(time.perf_counter() - begin)
         steps.append(solution.iterations)
         if not solution.ok:
             raise RuntimeError(f'warm solve {len(wall)} of {WARM_STEPS}: {solution.status}')
     # From the same solution of the same task on, with IPOPT's own multipliers of it.
-    referee = Referee(predictor, first, first_x, warm=True)
-    other: Refereed = Referee(predictor, first, first_x).solve(first_x)
+    referee = Referee(model, first, first_x, warm=True)
+    other: Refereed = Referee(model, first, first_x).solve(first_x)
     other_wall = []
     for task in tasks[:IPOPT_WARM_STEPS]:
         begin = time.perf_counter()
@@ -169,7 +166,7 @@ def warm(predictor: SpatialPredictor, task: SpatialTask, x0: Any) -> dict[str, f
 
 
 def random_task(
-    rng: np.random.Generator, finder: PostureFinder, predictor: SpatialPredictor, name: str
+    rng: np.random.Generator, finder: PostureFinder, model: SpatialModel, name: str
 ) -> tuple[SpatialTask, Any]:
     """Draw person and task until start and end can be held at rest; return the starts with it."""
     while True:
@@ -188,37 +185,47 @@ def random_task(
             assert mass is not None
             places = np.array([plan.start, (c * end[0], s * end[0], end[2])])
             box = PlacedBox((mass, mass), depth, width, places, np.array([0.0, turn]))
-            task = place_task(person, frame, box, (DURATION,) * 2, predictor.grid, name)
-            return task, finder.starts(task, predictor.grid)
+            task = place_task(person, frame, box, (DURATION,) * 2, model.grid, name)
+            return task, finder.starts(task, model.grid)
         except (HumanModelError, LiftPredictorError):
             continue
 
 
+def displaced(start: Start, number: int, rng: np.random.Generator) -> Start:
+    """Displace a start as the basin hops do, to either side."""
+    rows = start.control.shape[0] if number % 2 else 1
+    shift = HOP_SPREAD * rng.normal(size=(rows, start.control.shape[1]))
+    return replace(start, control=start.control + shift)
+
+
 def others(
-    predictor: SpatialPredictor, task: SpatialTask, start: SpatialStart, seed: int
+    solver: TaskSolver[SpatialTask], task: SpatialTask, start: Start, seed: int
 ) -> list[float]:
     """Objectives of runs from elsewhere than those of the prediction, where they converge."""
     rng = np.random.default_rng(seed)
     runs = [
-        predictor.run(task, replace(displaced(start, number, rng), barrier=OTHER_BARRIER))
+        solver.run(task, replace(displaced(start, number, rng), barrier=OTHER_BARRIER))
         for number in range(OTHER_STARTS)
     ]
-    return [run.solution.objective for run in runs if run.converged]
+    return [run.objective for run in runs if run.converged]
 
 
 def random_lifts(
-    predictor: SpatialPredictor, count: int, refereed: int = REFEREED_TASKS
+    solver: TaskSolver[SpatialTask],
+    model: SpatialModel,
+    count: int,
+    refereed: int = REFEREED_TASKS,
 ) -> dict[str, float]:
     """Solve and check random tasks; compare with runs from elsewhere, and some with IPOPT."""
-    rng, finder = np.random.default_rng(3), PostureFinder(predictor.library)
+    rng, finder = np.random.default_rng(3), PostureFinder(model.library)
     solved, violations, wall, excess, excess_ipopt = 0, 0, [], [], []
     for k in range(count):
-        task, starts = random_task(rng, finder, predictor, f'random {k}')
+        task, starts = random_task(rng, finder, model, f'random {k}')
         begin = time.perf_counter()
-        prediction = predictor.solve_task(task, starts, hops=predictor.options.hops)
+        prediction = solver.solve(task, starts, basin_hops=model.method.basin_hops)
         if not prediction.report.ok:
             far = [replace(start, barrier=FAR) for start in starts]
-            prediction = predictor.solve_task(task, far)
+            prediction = solver.solve(task, far)
         wall.append(time.perf_counter() - begin)
         if not prediction.report.ok:
             print(f'random {k}: {prediction.report.message}')
@@ -228,12 +235,12 @@ def random_lifts(
         assert check is not None
         violations += any(check.violation[name] > most for name, most in TOLERANCE.items())
         # Before margins for the time between the nodes, which the other answers have not.
-        mine = min(run.solution.objective for run in prediction.optima if run.converged)
-        best = min((mine, *others(predictor, task, starts[0], k)))
+        mine = min(run.objective for run in prediction.runs if run.converged)
+        best = min((mine, *others(solver, task, starts[0], k)))
         excess.append(mine / best - 1.0)
         if k < refereed:
-            x0 = starts[0].variables()
-            answer = Referee(predictor, task, x0).solve(x0).objective
+            x0 = model.variables(task, starts[0])
+            answer = Referee(model, task, x0).solve(x0).objective
             excess_ipopt.append(mine / answer - 1.0)
     return {
         'random3d_solved': solved, 'random3d_tasks': count, 'dense_grid_violations': violations,
@@ -257,29 +264,30 @@ def run(random_tasks: int = RANDOM_TASKS) -> Mapping[str, float]:
         `ipopt_*`, `*_cpu_s`, `*_iterations` beside them; `*_whole_*`: all starts, check, margins.
     """
     lift = recorded_lift('asymmetric_7kg')
-    predictor = SpatialPredictor()
-    predictor.configure(named_subject('thesis_ch4'))
+    predictor = LiftPredictor(PredictorOptions(dimension='3d', refinements=5))
+    solver, model = predictor.spatial, SpatialModel(predictor.options)
+    subject = named_subject('thesis_ch4')
     box = Box(lift.box_mass, 0.238)
-    task = predictor.task(lift, box)
-    start = recorded_starts(task, predictor.grid)[0]
-    result = pair('3d_fixed', predictor, task, start)
-    result |= warm(predictor, task, start.variables())
+    task = model.recorded_task(subject, lift, box)
+    start = model.starts(task)[0]
+    result = pair('3d_fixed', model, task, start)
+    result |= warm(model, task, model.variables(task, start))
     begin = time.perf_counter()
-    prediction = predictor.predict(lift, box)
+    prediction = predictor.predict(subject, lift, box)
     result['3d_fixed_whole_s'] = time.perf_counter() - begin
     result['3d_fixed_whole_objective'] = prediction.report.objective
 
-    heavy = open_mass(predictor.task(lift, box, ground_windows=False))
-    starts = recorded_starts(heavy, predictor.grid)[:1]
+    heavy = model.maximum_weight_task(subject, lift, box)
+    starts = model.starts(heavy)[:1]
     begin = time.perf_counter()
-    found = maximum_weight(predictor, heavy, starts)
+    found = maximum_weight(solver, heavy, starts)
     result['3d_max_whole_s'] = time.perf_counter() - begin
     if found.normalisation is not None:
         scale, share = found.normalisation, Weighting()
         objective = np.array([share.effort / scale.effort, share.box / scale.log_weight])
         weighted = replace(heavy, parameters=replace(heavy.parameters, objective=objective))
         # The start that leads furthest in `maximum_weight`.
-        result |= pair('3d_max', predictor, weighted, replace(starts[0], barrier=FAR))
+        result |= pair('3d_max', model, weighted, replace(starts[0], barrier=FAR))
         result['3d_max_weight_n'] = found.weight
         result['3d_max_whole_objective'] = found.prediction.report.objective
-    return result | random_lifts(predictor, random_tasks)
+    return result | random_lifts(solver, model, random_tasks)

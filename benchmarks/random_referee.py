@@ -21,12 +21,11 @@ from typing import Any, Final
 import numpy as np
 from benchmarks.solved_lifts import random_starts
 
-from human_model.typing import Array
-from lift_predictor.core.sagittal.grid import LiftBounds
-from lift_predictor.core.sagittal.optimiser import LiftOptimiser
+from lift_predictor.core.models.sagittal.lift_model import SagittalModel
+from lift_predictor.core.models.sagittal.task import SagittalTask
+from lift_predictor.core.problem.run import Start
 from lift_predictor.core.solvers.compiled import build_programme
 from lift_predictor.core.solvers.ipopt import LiftSolver
-from lift_predictor.core.solvers.solver_run import Start
 
 N_STARTS: Final = 20
 MAX_ITERATIONS: Final = 500
@@ -78,15 +77,15 @@ class RefereeStore:
 
     Parameters
     ----------
-    optimiser : LiftOptimiser
-        Of the programme.
+    model : SagittalModel
+        Of the NLP.
     path : Path
         The file; made when it is missing.
     """
 
-    def __init__(self, optimiser: LiftOptimiser, path: Path = STORE) -> None:
+    def __init__(self, model: SagittalModel, path: Path = STORE) -> None:
         self.path = path
-        self._optimiser = optimiser
+        self._model = model
         self._solver: LiftSolver | None = None
         self._known: dict[str, Referee] = {}
         if path.exists():
@@ -94,11 +93,11 @@ class RefereeStore:
                 record = Referee(**json.loads(line))
                 self._known[record.key] = record
 
-    def find(self, number: int, parameters: Array, bounds: LiftBounds) -> Referee:
+    def find(self, number: int, task: SagittalTask) -> Referee:
         """Return the record of a task; make it and append it to the file if there is none."""
-        grid = self._optimiser.grid
+        grid, parameters, bounds = self._model.grid, task.parameters.pack(), task.bounds
         starts = random_starts(bounds, grid, N_STARTS, number)
-        key = self._key(parameters, bounds, starts)
+        key = self._key(task, starts)
         if key in self._known:
             return self._known[key]
         if self._solver is None:
@@ -123,11 +122,11 @@ class RefereeStore:
             fcntl.flock(file, fcntl.LOCK_EX)
             file.write(json.dumps(asdict(record)) + '\n')
 
-    def _key(self, parameters: Array, bounds: LiftBounds, starts: Sequence[Start]) -> str:
-        programme = self._optimiser.programme(parameters, bounds)
+    def _key(self, task: SagittalTask, starts: Sequence[Start]) -> str:
+        programme = self._model.nlp(task)
         numbers = [programme.lower, programme.upper, programme.g_lower, programme.g_upper]
         for start in starts:
-            objective, rows = programme.values(np.append(start.control, bounds.box_mass[0]))
+            objective, rows = programme.values(np.append(start.control, task.mass[0]))
             numbers += [start.control.ravel(), np.array([objective]), rows]
         text = ' '.join(f'{value:.6e}' for value in np.concatenate(numbers))
         settings = repr((SETTINGS, MAX_ITERATIONS))

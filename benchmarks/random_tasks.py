@@ -11,9 +11,11 @@ import numpy as np
 from human_model.exceptions import HumanModelError
 from human_model.subject import Subject
 from lift_predictor.core.exceptions import LiftPredictorError
-from lift_predictor.core.planning.build import Plan, build_plan
+from lift_predictor.core.models.sagittal.person import Person
+from lift_predictor.core.models.sagittal.plan import build_plan
+from lift_predictor.core.models.sagittal.task import SagittalTask
 from lift_predictor.core.planning.plan_task import PlanTask
-from lift_predictor.core.sagittal.person import Person
+from lift_predictor.core.problem.model import Plan
 
 MASS: Final = (3.0, 25.0)
 START_HEIGHT: Final = (0.1, 0.7)
@@ -54,7 +56,9 @@ def random_case(rng: np.random.Generator, name: str = 'random') -> tuple[Subject
     return subject, task
 
 
-def plan_random(rng: np.random.Generator, name: str = 'random') -> tuple[Subject, PlanTask, Plan]:
+def plan_random(
+    rng: np.random.Generator, name: str = 'random'
+) -> tuple[Subject, PlanTask, Plan[SagittalTask]]:
     """Draw until the places are within reach, in balance and clear of the body.
 
     Whether the person is strong enough is left to the solver.

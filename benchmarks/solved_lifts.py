@@ -18,11 +18,12 @@ from typing import Final
 import numpy as np
 from benchmarks.random_tasks import plan_random
 
-from human_model.typing import Array
-from lift_predictor.core.sagittal.grid import Grid, LiftBounds
-from lift_predictor.core.sagittal.optimiser import LiftOptimiser
-from lift_predictor.core.sagittal.parameters import JOINTS
-from lift_predictor.core.solvers.solver_run import SolverRun, Start, best_objective
+from lift_predictor.core.models.sagittal.grid import LiftBounds, SagittalGrid
+from lift_predictor.core.models.sagittal.lift_model import SagittalModel
+from lift_predictor.core.models.sagittal.parameters import JOINTS
+from lift_predictor.core.models.sagittal.task import SagittalTask
+from lift_predictor.core.problem.run import SolverRun, Start, best_objective
+from lift_predictor.core.problem.task_solver import TaskSolver
 
 SEED: Final = 7
 N_TASKS: Final = 98
@@ -33,14 +34,14 @@ N_OTHERS: Final = 16
 N_KEPT: Final = 4
 EQUAL: Final = 1.001
 """Efforts that differ by 0.1 % are the same optimum."""
-GRID: Final = Grid(7, 25)
+GRID: Final = SagittalGrid(7, 25)
 FILE: Final = (
     Path(__file__).resolve().parents[1]
     / 'ros_ws/src/lift_predictor/lift_predictor/data/solved_lifts.csv'
 )
 
 
-def random_starts(bounds: LiftBounds, grid: Grid, count: int, seed: int) -> list[Start]:
+def random_starts(bounds: LiftBounds, grid: SagittalGrid, count: int, seed: int) -> list[Start]:
     """Control values anywhere in the joint limits."""
     rng = np.random.default_rng(seed)
     shape = (grid.spline.n_free, len(JOINTS))
@@ -50,20 +51,19 @@ def random_starts(bounds: LiftBounds, grid: Grid, count: int, seed: int) -> list
 
 def main() -> None:
     """Solve, choose, write."""
-    optimiser = LiftOptimiser(GRID)
+    solver = TaskSolver(SagittalModel(grid=GRID))
     rng = np.random.default_rng(SEED)
-    tasks: list[tuple[Array, LiftBounds]] = []
+    tasks: list[SagittalTask] = []
     best: list[SolverRun] = []
     own: list[float] = []
     for number in range(N_TASKS):
         _, _, plan = plan_random(rng)
-        vector, bounds = plan.task.parameters.pack(), plan.task.bounds
-        made = plan.starts(GRID.spline, N_MADE)
-        starts = (*made, *random_starts(bounds, GRID, N_RANDOM, 1000 + number))
-        runs = [optimiser.solve(vector, bounds, start) for start in starts]
+        made = solver.model.plan_starts(plan, N_MADE)
+        starts = (*made, *random_starts(plan.task.bounds, GRID, N_RANDOM, 1000 + number))
+        runs = [solver.run(plan.task, start) for start in starts]
         solved = [run for run in runs if run.converged]
         if solved:
-            tasks.append((vector, bounds))
+            tasks.append(plan.task)
             best.append(min(solved, key=lambda run: run.objective))
             own.append(best_objective(runs[:N_MADE]))
     reached = np.nan_to_num(np.array(own), nan=np.inf)
@@ -72,9 +72,9 @@ def main() -> None:
     others = np.setdiff1d(np.arange(len(tasks)), missed)[:N_OTHERS]
     candidates = [*missed.tolist(), *others.tolist()]
     effort = np.full((len(tasks), len(candidates)), np.inf)
-    for row, (vector, bounds) in enumerate(tasks):
+    for row, task in enumerate(tasks):
         for column, candidate in enumerate(candidates):
-            run = optimiser.solve(vector, bounds, best[candidate].as_start())
+            run = solver.run(task, best[candidate].as_start())
             if run.converged:
                 effort[row, column] = run.objective
     known = np.minimum(known, effort.min(axis=1))

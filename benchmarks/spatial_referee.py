@@ -15,10 +15,10 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from lift_predictor.core.models.spatial.assembly import spatial_nlp
+from lift_predictor.core.models.spatial.lift_model import SOLVER_OPTIONS, SpatialModel
+from lift_predictor.core.models.spatial.task import SpatialTask
 from lift_predictor.core.solvers.spline_nlp import SplineNlp
-from lift_predictor.core.spatial.predictor import SpatialPredictor
-from lift_predictor.core.spatial.programme import spatial_assembler, spatial_programme
-from lift_predictor.core.spatial.task import SpatialTask
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,27 +65,25 @@ class Referee:
 
     Parameters
     ----------
-    predictor : SpatialPredictor
+    model : SpatialModel
         Its compiled functions and grid.
     task : SpatialTask
         Task; other ones may differ in their bounds.
     x0 : array
         About where its Jacobian is probed for zeros.
     barrier : float, optional
-        First barrier parameter; the predictor's if omitted.
+        First barrier parameter; the model's if omitted.
     warm : bool
         Start from multipliers, as near to the bounds as our method does.
     """
 
     def __init__(
-        self, predictor: SpatialPredictor, task: SpatialTask, x0: Any,
+        self, model: SpatialModel, task: SpatialTask, x0: Any,
         barrier: float | None = None, warm: bool = False,
     ) -> None:  # fmt: skip
-        self._predictor = predictor
-        self.programme = p = spatial_programme(
-            spatial_assembler(predictor.library, predictor.grid), predictor.grid,
-            task.parameters, task.bounds,
-        )  # fmt: skip
+        self._model = model
+        # Of its own assembler: the derivatives belong to its last point.
+        self.programme = p = SpatialModel(model.options).nlp(task)
         a, n, m = p.assembler, p.n, len(p.g_lower)
         everything = np.arange(m, dtype=np.int32)
         rng = np.random.default_rng(0)
@@ -130,15 +128,15 @@ class Referee:
             'print_time': False, 'error_on_fail': False, 'calc_lam_p': False,
             'ipopt.print_level': 0, 'ipopt.sb': 'yes',
             'ipopt.tol': 1e-8, 'ipopt.max_iter': 400,
-            'ipopt.mu_init': barrier or predictor.options.barrier,
+            'ipopt.mu_init': barrier or SOLVER_OPTIONS.barrier,
         }  # fmt: skip
         if warm:
-            push = predictor.options.warm_bound_push
+            push = SOLVER_OPTIONS.warm_bound_push
             options |= {'ipopt.warm_start_init_point': 'yes'} | {
                 f'ipopt.warm_start_{name}_push': push
                 for name in ('bound', 'slack_bound', 'mult_bound')
             }
-            options['ipopt.mu_init'] = predictor.options.warm_barrier
+            options['ipopt.mu_init'] = SOLVER_OPTIONS.warm_barrier
         problem: dict[str, Any] = {'x': x, 'f': f, 'g': g}
         self._ipopt = ca.nlpsol('referee', 'ipopt', problem, options)
 
@@ -148,8 +146,8 @@ class Referee:
         """Solve, perhaps with the bounds of another task, and from an answer before."""
         p: SplineNlp = self.programme
         if task is not None:
-            grid = self._predictor.grid
-            p = spatial_programme(p.assembler, grid, task.parameters, task.bounds)
+            parameters = task.parameters.pack()
+            p = spatial_nlp(p.assembler, self._model.grid, parameters, task.bounds)
         bounds = {'lbx': p.lower, 'ubx': p.upper, 'lbg': p.g_lower, 'ubg': p.g_upper}
         if before is not None:
             x0 = before.x

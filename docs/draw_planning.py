@@ -18,18 +18,17 @@ from docs.draw_figures import BLUE, GREY, ORANGE, ROOT, STYLE, save
 from matplotlib.figure import Figure
 
 from human_model.motion import BodyMotion, Lift
+from human_model.subject import Subject
+from lift_predictor.core.models.sagittal.lift_model import COMPARED_JOINTS
+from lift_predictor.core.models.sagittal.parameters import JOINTS
+from lift_predictor.core.models.sagittal.task import SagittalTask
+from lift_predictor.core.models.spatial.task import SpatialTask
 from lift_predictor.core.options import PredictorOptions
 from lift_predictor.core.planning.plan_task import PlanTask
 from lift_predictor.core.planning.planner import LiftPlanner
-from lift_predictor.core.planning.technique import stoop_squat_index
 from lift_predictor.core.predictor import LiftPredictor
-from lift_predictor.core.sagittal.comparison import COMPARED_JOINTS
-from lift_predictor.core.sagittal.parameters import JOINTS
-from lift_predictor.core.sagittal.prediction import PredictedLift2D
-from lift_predictor.core.sagittal.task import Box, LiftTask2D, build_task
-from lift_predictor.core.spatial.evaluation import lowering
-from lift_predictor.core.spatial.prediction import PredictedLift3D
-from lift_predictor.core.spatial.task import SpatialTask
+from lift_predictor.core.problem.prediction import Prediction
+from lift_predictor.core.problem.task import Box
 from lifting_cli.recorded_lifts import recorded_lifts
 from lifting_recordings.reader import BagReader
 from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
@@ -93,7 +92,7 @@ def box_of(bag: str) -> tuple[float, tuple[float, float, float]]:
 
 
 def same_task(
-    recorded: LiftTask2D, size: tuple[float, float, float], styles: tuple[str, str]
+    recorded: SagittalTask, size: tuple[float, float, float], styles: tuple[str, str]
 ) -> PlanTask:
     """Describe a recorded task without its postures; the floor of a plan is at 0."""
     parameters = recorded.parameters
@@ -133,22 +132,21 @@ def curves(bag: str) -> tuple[list[Curve], list[Curve]]:
     recording = recorded_lifts(ROOT / 'bags' / bag)
     lift, subject = recording.lift(1).lift, recording.subject
     planner = LiftPlanner()
-    planner.predictor.configure(subject)
     box = Box(mass=mass, depth=size[0])
-    predicted = planner.predictor.predict(lift, box)
+    predicted = planner.predictor.predict(subject, lift, box)
     if not predicted.report.ok:
         raise SystemExit(f'{bag}: {predicted.report.message}')
-    in_space = isinstance(predicted, PredictedLift3D)
+    in_space = predicted.model == 'spatial'
 
     def plain(styles: tuple[str, str]) -> PlanTask:
         if in_space:
-            return same_task_in_space(planner.predictor.spatial().task(lift, box), size, styles)
-        person = planner.predictor.person
-        assert person is not None
-        return same_task(build_task(person, lift, box), size, styles)
+            task = planner.predictor.spatial.model.recorded_task(subject, lift, box)
+            return same_task_in_space(task, size, styles)
+        flat = planner.predictor.sagittal.model.recorded_task(subject, lift, box)
+        return same_task(flat, size, styles)
 
     analyzer = MuscleAnalyzer(subject)
-    index = _index(planner, predicted, lift, box)
+    index = _index(planner, predicted, subject, lift, box)
     found, again = [_curve(RECORDED, predicted, index, analyzer)], list[Curve]()
     own = technique_of(index)
     other = LiftPlanner(LiftPredictor(PredictorOptions(dimension='3d')))
@@ -161,25 +159,23 @@ def curves(bag: str) -> tuple[list[Curve], list[Curve]]:
             planned = used.plan(subject, plain((technique, end)))
             if not planned.report.ok:
                 raise SystemExit(f'{bag}, {name}: {planned.report.message}')
-            effort = planned.effort if planned.in_space else planned.report.objective
+            effort = planned.report.objective
+            if planned.prediction.model == 'spatial':
+                effort = planned.prediction.effort
             kept.append(_curve(words, planned.prediction, planned.index, analyzer, effort))
     return found, again
 
 
 def _index(
-    planner: LiftPlanner, predicted: PredictedLift2D | PredictedLift3D, lift: Lift, box: Box
+    planner: LiftPlanner, predicted: Prediction, subject: Subject, lift: Lift, box: Box
 ) -> float:
     """Stoop-Squat-Index of the first posture of a prediction."""
-    if isinstance(predicted, PredictedLift2D):
-        person = planner.predictor.person
-        assert person is not None
-        task = build_task(person, lift, box)
-        first = predicted.optima[0].control[:1]
-        return float(stoop_squat_index(first, task.person, task.parameters)[0])
-    spatial = planner.predictor.spatial()
-    parameters = spatial.task(lift, box).parameters
-    hips, c7 = lowering(spatial.library, predicted.control[:1], parameters)
-    return 100.0 * (1.0 - float(hips[0] / c7[0]))
+    control = predicted.runs[0].control
+    if predicted.model == 'spatial':
+        spatial = planner.predictor.spatial.model
+        return spatial.squat_index(subject, spatial.recorded_task(subject, lift, box), control)
+    sagittal = planner.predictor.sagittal.model
+    return sagittal.squat_index(subject, sagittal.recorded_task(subject, lift, box), control)
 
 
 def technique_of(index: float) -> str:
@@ -189,7 +185,7 @@ def technique_of(index: float) -> str:
 
 def _curve(
     name: str,
-    prediction: PredictedLift2D | PredictedLift3D,
+    prediction: Prediction | Prediction,
     index: float,
     analyzer: MuscleAnalyzer,
     effort: float | None = None,

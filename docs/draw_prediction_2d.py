@@ -22,13 +22,9 @@ from matplotlib.figure import Figure
 
 from human_model.motion import Lift
 from human_model.subject import Subject
-from lift_predictor.core.maximum_weight import (
-    MaximumWeight,
-    Weighting,
-    heaviest_box,
-    maximum_weight_task,
-    solve_maximum_weight,
-)
+from lift_predictor.core.models.sagittal.lift_model import COMPARED_JOINTS, SagittalModel
+from lift_predictor.core.models.sagittal.parameters import JOINTS
+from lift_predictor.core.models.sagittal.task import SagittalTask
 from lift_predictor.core.pareto import weightings
 from lift_predictor.core.percentile import (
     Percentile,
@@ -36,10 +32,12 @@ from lift_predictor.core.percentile import (
     percentile_by_root,
 )
 from lift_predictor.core.predictor import LiftPredictor
-from lift_predictor.core.sagittal.comparison import COMPARED_JOINTS
-from lift_predictor.core.sagittal.parameters import JOINTS
-from lift_predictor.core.sagittal.starts import make_starts
-from lift_predictor.core.sagittal.task import LiftTask2D
+from lift_predictor.core.problem.maximum_weight import (
+    MaximumWeight,
+    Weighting,
+    heaviest_box,
+    maximum_weight,
+)
 
 CHAIN: Final = ('toe_r', 'ankle_r', 'knee_r', 'hip_r', 'l5_s1', 'shoulder_r', 'elbow_r', 'hand_r')
 SNAPSHOTS: Final = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
@@ -66,7 +64,6 @@ def validate(enumerate_too: bool) -> Validation:
     """Find the strength of the average man and predict his heaviest box."""
     subject = average_man()
     predictor = LiftPredictor()
-    predictor.configure(subject)
     lift = simulated_lift(subject, lifting_task(TASK))
     box = task_box()
     found, seconds = {}, {}
@@ -75,17 +72,18 @@ def validate(enumerate_too: bool) -> Validation:
         methods['enumeration'] = percentile_by_enumeration
     for name, method in methods.items():
         begin = time.perf_counter()
-        found[name] = method(predictor, lift, box)
+        found[name] = method(predictor, subject, lift, box)
         seconds[name] = time.perf_counter() - begin
         print(
             f'z_score by {name}: {found[name].z_score:.4f}, {len(found[name].tried)} '
             f'predictions, {seconds[name]:.2f} s'
         )
-    predictor.configure(replace(subject, strength_z=found['root'].z_score))
-    task = maximum_weight_task(predictor, lift, box)
-    starts = make_starts(task, predictor.programme.grid.spline)
-    heaviest = heaviest_box(predictor, task, starts)
-    moo = solve_maximum_weight(predictor, task, starts, Weighting(), heaviest)
+    solver = predictor.sagittal
+    strong = replace(subject, strength_z=found['root'].z_score)
+    task = solver.model.maximum_weight_task(strong, lift, box)
+    starts = solver.model.starts(task)
+    heaviest = heaviest_box(solver, task, starts)
+    moo = maximum_weight(solver, task, starts, Weighting(), heaviest)
     return Validation(
         lift, found['root'], found.get('enumeration'), {WITH: moo, WITHOUT: heaviest}
     )
@@ -131,7 +129,8 @@ def print_tables(known: Validation) -> None:
         ends = ['', ''] if r is None else [f'{value:.3f}' for value in r]
         print(f'| {name} | {rmse[0]:.2f} | {rmse[1]:.2f} | {ends[0]} | {ends[1]} |')
     for name, result in known.results.items():
-        print(f'{name}: effort {result.effort:.4f} s; binding: {result.binding[:5]}')
+        limits = result.active_constraints[:5]
+        print(f'{name}: effort {result.effort:.4f} s; active constraints: {limits}')
 
 
 def curves(found: Study) -> Figure:
@@ -259,11 +258,9 @@ def profiles(known: Validation) -> Figure:
     return figure
 
 
-def maximum_task(known: Validation) -> LiftTask2D:
+def maximum_task(known: Validation) -> SagittalTask:
     """Return the task of the man's lift, which holds the recorded angles."""
-    predictor = LiftPredictor()
-    predictor.configure(average_man())
-    return maximum_weight_task(predictor, known.lift, task_box())
+    return SagittalModel().maximum_weight_task(average_man(), known.lift, task_box())
 
 
 def print_group(found: Study) -> None:

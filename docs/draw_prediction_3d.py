@@ -18,12 +18,12 @@ from matplotlib.figure import Figure
 
 from human_model.motion import BodyMotion, Lift
 from human_model.named_subjects import named_subject
-from lift_predictor.core.sagittal.task import Box
-from lift_predictor.core.spatial.comparison import SpatialComparison
-from lift_predictor.core.spatial.maximum_weight import maximum_weight, open_mass
-from lift_predictor.core.spatial.prediction import PredictedLift3D
-from lift_predictor.core.spatial.predictor import SpatialPredictor
-from lift_predictor.core.spatial.starts import recorded_starts
+from lift_predictor.core.options import PredictorOptions
+from lift_predictor.core.predictor import LiftPredictor
+from lift_predictor.core.problem.comparison import LiftComparison
+from lift_predictor.core.problem.maximum_weight import maximum_weight
+from lift_predictor.core.problem.prediction import Prediction
+from lift_predictor.core.problem.task import Box
 
 SUBJECT: Final = 'thesis_ch4'
 LIFT: Final = 'asymmetric_7kg'
@@ -114,9 +114,9 @@ def forces(recorded: BodyMotion, predicted: BodyMotion) -> Figure:
     return figure
 
 
-def report(predicted: PredictedLift3D, comparison: SpatialComparison) -> None:
+def report(predicted: Prediction, comparison: LiftComparison) -> None:
     """Print what the page says of the given weight."""
-    best = predicted.optima[0].solution
+    best = predicted.runs[0].solution
     print(f'{predicted.report.message}: effort {comparison.predicted_effort:.3f} s, recorded '
           f'{comparison.measured_effort:.3f} s')  # fmt: skip
     print(f'KKT: primal {best.primal:.1e}, dual {best.dual:.1e}, '
@@ -134,15 +134,14 @@ def report(predicted: PredictedLift3D, comparison: SpatialComparison) -> None:
 
 def maximum(lift: Lift, z: float) -> None:
     """Print the maximum weight of the asymmetric lift for a z-score."""
-    predictor = SpatialPredictor()
-    predictor.configure(replace(named_subject(SUBJECT), strength_z=z))
-    task = open_mass(predictor.task(lift, Box(lift.box_mass, DEPTH), ground_windows=False))
-    found = maximum_weight(predictor, task, recorded_starts(task, predictor.grid)[:1])
+    subject = replace(named_subject(SUBJECT), strength_z=z)
+    solver = LiftPredictor(PredictorOptions(dimension='3d', refinements=5)).spatial
+    task = solver.model.maximum_weight_task(subject, lift, Box(lift.box_mass, DEPTH))
+    found = maximum_weight(solver, task, solver.model.starts(task)[:1])
     print(f'z = {z:g}: {found.weight:.1f} N, effort {found.effort:.2f} s; heaviest '
           f'{found.normalisation}; {found.prediction.report.message}')  # fmt: skip
-    loads = found.prediction.loads
-    if loads is not None:
-        held = -loads.hand_force[:, :, 2].mean(axis=0)
+    if found.prediction.lift is not None:
+        held = -found.prediction.lift.motion.hand_force[:, :, 2].mean(axis=0)
         print(f'mean vertical force of right and left hand: {held.round(1)} N')
 
 
@@ -150,9 +149,9 @@ def main() -> None:
     """Compute, draw, print."""
     mpl.rcParams.update(STYLE)
     lift = recorded_lift(LIFT)
-    predictor = SpatialPredictor()
-    predictor.configure(named_subject(SUBJECT))
-    predicted, comparison = predictor.predict_and_compare(lift, Box(lift.box_mass, DEPTH))
+    predictor = LiftPredictor(PredictorOptions(dimension='3d', refinements=5))
+    predicted = predictor.predict(named_subject(SUBJECT), lift, Box(lift.box_mass, DEPTH))
+    comparison = predicted.comparison
     assert predicted.lift is not None and comparison is not None, predicted.report.message
     report(predicted, comparison)
     motions = lift.window, predicted.lift.motion

@@ -29,9 +29,9 @@ print(points[0, 0, 2], sum(points_and_frames.stats.cache_misses.values()))
 """
 C = """
 import numpy as np
-from lift_predictor.core.sagittal.grid import Grid
-from lift_predictor.core.sagittal.programme import sagittal_assembler, sagittal_library
-library, grid = sagittal_library(), Grid(5, 5)
+from lift_predictor.core.models.sagittal.grid import SagittalGrid
+from lift_predictor.core.models.sagittal.assembly import sagittal_assembler, sagittal_library
+library, grid = sagittal_library(), SagittalGrid(5, 5)
 assembler = sagittal_assembler(library, grid)
 assembler.set_parameters(np.linspace(0.5, 1.5, library.functions['hand'].n_parameters))
 print(assembler.values(np.linspace(0.1, 0.6, grid.n_variables))[0], library.backend)
@@ -95,7 +95,7 @@ def test_edited_callee_in_another_file_is_compiled_again_to_c(run, tmp_path):
     effort, backend = run(C)
     assert backend.startswith('functions compiled with')
     assert run(C) == [effort, FROM_CACHE], 'unchanged sources are not compiled again'
-    model = tmp_path / 'lift_predictor' / 'core' / 'sagittal' / 'model.py'
+    model = tmp_path / 'lift_predictor' / 'core' / 'models' / 'sagittal' / 'model.py'
     edit(model, 'return c1 + c2 * in_angle', 'return 2.0 * c1 + c2 * in_angle')
     changed, backend = run(C)
     assert backend.startswith('functions compiled with')

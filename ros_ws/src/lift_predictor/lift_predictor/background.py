@@ -45,7 +45,7 @@ class Background:
 
     @cached_property
     def predictor(self) -> LiftPredictor:
-        """A predictor beside that of the recorded lifts, configured anew by each piece of work."""
+        """A predictor beside that of the recorded lifts, for the goals of actions."""
         return LiftPredictor(self._options, self._stop)
 
     def close(self) -> None:

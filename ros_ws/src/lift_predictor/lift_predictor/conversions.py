@@ -15,12 +15,9 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from human_model.motion import Lift
 from human_model.subject import Subject
-from lift_predictor.core.sagittal.comparison import COMPARED_JOINTS, LiftComparison
-from lift_predictor.core.sagittal.parameters import JOINTS
-from lift_predictor.core.sagittal.prediction import PredictedLift2D
-from lift_predictor.core.sagittal.task import Box
-from lift_predictor.core.spatial.comparison import SpatialComparison
-from lift_predictor.core.spatial.prediction import PredictedLift3D
+from lift_predictor.core.problem.comparison import LiftComparison
+from lift_predictor.core.problem.prediction import Prediction
+from lift_predictor.core.problem.task import Box
 from lifting_node.conversions import (
     LABORATORY,
     MotionQuality,
@@ -59,7 +56,7 @@ def box_from_msg(task: TaskMsg, mass: float) -> Box:
 
 
 def prediction_to_msg(
-    prediction: PredictedLift2D | PredictedLift3D, lift: Lift | None, subject: Subject
+    prediction: Prediction, lift: Lift | None, subject: Subject
 ) -> PredictedLiftMsg:
     """Return the message of a prediction; without a solution its arrays are empty.
 
@@ -92,7 +89,7 @@ def prediction_to_msg(
     return message
 
 
-def trajectory_to_msg(prediction: PredictedLift2D | PredictedLift3D) -> JointTrajectory:
+def trajectory_to_msg(prediction: Prediction) -> JointTrajectory:
     """Return the joint trajectory of a solved prediction, all coordinates of its skeleton.
 
     Efforts are the joint torques [N m]; the free pelvis has none.
@@ -120,19 +117,13 @@ def trajectory_to_msg(prediction: PredictedLift2D | PredictedLift3D) -> JointTra
 
 
 def comparison_to_msg(
-    comparison: LiftComparison | SpatialComparison,
-    prediction: PredictedLift2D | PredictedLift3D,
-    lift: Lift,
+    comparison: LiftComparison, prediction: Prediction, lift: Lift
 ) -> LiftComparisonMsg:
     """Return the message of a comparison."""
     loads = comparison.measured
-    joints: tuple[str, ...] = COMPARED_JOINTS
-    torques: tuple[str, ...] = JOINTS
-    if isinstance(comparison, SpatialComparison):
-        joints, torques = comparison.joint_names, comparison.torque_names
     message = LiftComparisonMsg(
         lift_id=prediction.lift_id,
-        joint_names=list(joints),
+        joint_names=list(comparison.joint_names),
         joint_rmse=flat(comparison.joint_rmse),
         joint_pearson=flat(comparison.joint_pearson),
         vertical_force_rmse=comparison.vertical_force_rmse,
@@ -141,7 +132,7 @@ def comparison_to_msg(
         horizontal_force_pearson=comparison.horizontal_force_pearson,
         measured_effort=comparison.measured_effort,
         predicted_effort=comparison.predicted_effort,
-        torque_names=list(torques),
+        torque_names=list(comparison.torque_names),
         time_from_start=flat(comparison.time),
         torque=flat(loads.torque),
         torque_lower=flat(loads.lower),

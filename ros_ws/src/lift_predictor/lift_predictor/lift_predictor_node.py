@@ -25,8 +25,7 @@ from lift_predictor.background import Background
 from lift_predictor.core.exceptions import CancelledError, LiftPredictorError
 from lift_predictor.core.options import PredictorOptions
 from lift_predictor.core.predictor import LiftPredictor
-from lift_predictor.core.sagittal.prediction import PredictedLift2D
-from lift_predictor.core.spatial.prediction import PredictedLift3D
+from lift_predictor.core.problem.prediction import Prediction
 from lift_predictor.plan_action import PlanAction
 from lifting_node import qos
 from lifting_node.pipeline_node import PipelineNode
@@ -50,8 +49,8 @@ class LiftPredictorNode(PipelineNode):
         """Load (once per machine: compile) the programme; create publishers and subscriptions."""
         options = PredictorOptions(**self.values)
         self.predictor = LiftPredictor(options)
-        programme = self.predictor.programme
-        self.get_logger().info(f'{programme.backend} ({programme.build_time:.2f} s)')
+        library = self.predictor.sagittal.model.library
+        self.get_logger().info(f'{library.backend} ({library.build_time:.2f} s)')
         self._subject: Subject | None = None
         self._task: Task | None = None
         self._waiting: OrderedDict[str, Lift] = OrderedDict()
@@ -98,16 +97,14 @@ class LiftPredictorNode(PipelineNode):
             result.error_message = f'lift_id: no lift {goal.lift_id!r} was seen'
             return result
 
-        def tell(tried: int, total: int, best: float) -> None:
+        def report(tried: int, total: int, best: float) -> None:
             feedback = PredictLift.Feedback(starts_tried=tried, starts_total=total)
             feedback.best_objective = best
             handle.publish_feedback(feedback)
             self._background.check()
 
-        def work() -> PredictedLift2D | PredictedLift3D:
-            predictor = self._background.predictor
-            predictor.configure(subject)
-            return predictor.predict_and_compare(lift, box, tell)[0]
+        def work() -> Prediction:
+            return self._background.predictor.predict(subject, lift, box, report)
 
         mass = lift.box_mass if math.isnan(goal.box_mass) else goal.box_mass
         try:
@@ -134,9 +131,7 @@ class LiftPredictorNode(PipelineNode):
         return result
 
     def _on_subject(self, message: SubjectMsg) -> None:
-        subject = conversions.subject_from_msg(message)
-        self.predictor.configure(subject)
-        self._subject = subject
+        self._subject = conversions.subject_from_msg(message)
         self._predict_waiting()
 
     def _on_task(self, message: Task) -> None:
@@ -164,7 +159,8 @@ class LiftPredictorNode(PipelineNode):
         self._seen[lift.lift_id] = lift
         if len(self._seen) > KEPT_LIFTS:
             self._seen.popitem(last=False)
-        prediction, comparison = self.predictor.predict_and_compare(lift, box)
+        prediction = self.predictor.predict(subject, lift, box)
+        comparison = prediction.comparison
         self.counts['predicted' if prediction.report.ok else 'not predicted'] += 1
         self._predicted.publish(conversions.prediction_to_msg(prediction, lift, subject))
         if not prediction.report.ok or comparison is None:

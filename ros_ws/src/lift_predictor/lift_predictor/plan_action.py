@@ -20,7 +20,7 @@ from lift_predictor.core.exceptions import CancelledError, LiftPredictorError
 from lift_predictor.core.planning.plan_task import DEFAULT_DURATION, PlanTask
 from lift_predictor.core.planning.planned_lift import PlannedLift
 from lift_predictor.core.planning.planner import LiftPlanner
-from lift_predictor.core.planning.solve import PlanProgress
+from lift_predictor.core.planning.progress import PlanProgress
 from lift_predictor.core.planning.technique import FREE
 
 
@@ -108,11 +108,11 @@ class PlanAction:
             result.error_message = planned.report.message
             handle.abort()
             return result
-        result.feet_forward = planned.ankle
-        result.feet_left = planned.left
-        result.feet_heading = planned.heading
+        result.feet_forward = planned.feet.forward
+        result.feet_left = planned.feet.left
+        result.feet_heading = planned.feet.heading
         result.technique_index = planned.index
-        result.binding = list(planned.binding)
+        result.binding = list(planned.prediction.active_constraints)
         handle.succeed()
         self._logger.info(f'planned {task.name}: {planned.report.message}')
         return result

@@ -15,20 +15,19 @@ from human_model.motion import Lift
 from human_model.report import SolveReport
 from human_model.subject import Subject
 from lift_predictor.core.bspline import RestToRestSpline
+from lift_predictor.core.models.sagittal.assembly import sagittal_library
+from lift_predictor.core.models.sagittal.evaluation import evaluate
+from lift_predictor.core.models.sagittal.kinematics import pelvis_motion, reach
+from lift_predictor.core.models.sagittal.parameters import JOINTS, LiftParameters
+from lift_predictor.core.models.sagittal.person import Person
+from lift_predictor.core.models.spatial.frame import StanceFrame
+from lift_predictor.core.models.spatial.grid import SpatialGrid
+from lift_predictor.core.models.spatial.person import SpatialPerson
+from lift_predictor.core.models.spatial.task import PlacedBox, SpatialTask, place_task
 from lift_predictor.core.predictor import LiftPredictor
-from lift_predictor.core.sagittal.comparison import LiftComparison
-from lift_predictor.core.sagittal.evaluation import evaluate, sample
-from lift_predictor.core.sagittal.kinematics import pelvis_motion, reach
-from lift_predictor.core.sagittal.parameters import JOINTS, LiftParameters
-from lift_predictor.core.sagittal.person import Person
-from lift_predictor.core.sagittal.prediction import PredictedLift2D
-from lift_predictor.core.sagittal.programme import sagittal_library
-from lift_predictor.core.sagittal.report_function import ReportFunction
-from lift_predictor.core.sagittal.task import Box
-from lift_predictor.core.spatial.frame import StanceFrame
-from lift_predictor.core.spatial.grid import SpatialGrid
-from lift_predictor.core.spatial.person import SpatialPerson
-from lift_predictor.core.spatial.task import PlacedBox, SpatialTask, place_task
+from lift_predictor.core.problem.comparison import LiftComparison
+from lift_predictor.core.problem.prediction import Prediction
+from lift_predictor.core.problem.task import Box
 
 BOX_DEPTH, BOX_HEIGHT = 0.238, 0.127
 BOX_GAP, SHELF_GAP, SHELF_HEIGHT = 0.033, 0.305, 0.9
@@ -42,7 +41,7 @@ class Outcome(NamedTuple):
 
     lift: Lift
     box: Box
-    predicted: PredictedLift2D
+    predicted: Prediction
     comparison: LiftComparison | None
 
 
@@ -83,7 +82,7 @@ def parameters(person: Person) -> LiftParameters:
 @pytest.fixture(scope='session')
 def make_lift(person: Person) -> MakeLift:
     """Return a function that makes a recorded lift on the 2D skeleton."""
-    report = ReportFunction(sagittal_library())
+    library = sagittal_library()
 
     @cache
     def make(
@@ -102,8 +101,8 @@ def make_lift(person: Person) -> MakeLift:
             [first, 0.7 * first + 0.3 * middle, middle, 0.7 * last + 0.3 * middle, last]
         )
         time = np.linspace(0.0, DURATION, round(100 * DURATION) + 1)
-        q, dq, ddq = sample(spline, control, time / DURATION, DURATION)
-        loads = evaluate(report, q, dq, ddq, parameters)
+        q, dq, ddq = spline.sample(control, time / DURATION, DURATION)
+        loads = evaluate(library, q, dq, ddq, parameters)
         return recorded_lift(person, parameters, time, (q, dq, ddq), loads)
 
     return make
@@ -157,21 +156,21 @@ def recorded_lift(person, parameters, time, coordinates, loads) -> Lift:
 
 
 @pytest.fixture(scope='session')
-def predictor(subject: Subject) -> LiftPredictor:
+def predictor() -> LiftPredictor:
     """Predictor of the dissertation's subject, with the functions of the user's cache."""
-    predictor = LiftPredictor()
-    predictor.configure(subject)
-    return predictor
+    return LiftPredictor()
 
 
 @pytest.fixture(scope='session')
-def outcome(predictor: LiftPredictor, make_lift: MakeLift) -> Callable[[float], Outcome]:
+def outcome(
+    subject: Subject, predictor: LiftPredictor, make_lift: MakeLift
+) -> Callable[[float], Outcome]:
     """Return a function that predicts (once per mass) the lift of a mass [kg]."""
 
     @cache
     def solve(mass: float) -> Outcome:
         lift, box = make_lift(mass), Box(mass=mass, depth=BOX_DEPTH if mass > 0.0 else 0.0)
-        predicted, comparison = predictor.predict_and_compare(lift, box)
-        return Outcome(lift, box, predicted, comparison)
+        predicted = predictor.predict(subject, lift, box)
+        return Outcome(lift, box, predicted, predicted.comparison)
 
     return solve

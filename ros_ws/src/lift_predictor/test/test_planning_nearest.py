@@ -10,24 +10,37 @@ import numpy as np
 import pytest
 
 from human_model.report import SolveReport, SolveStatus
-from lift_predictor.core.planning.nearest import (
+from lift_predictor.core.models.sagittal.way import standard, standard_ways
+from lift_predictor.core.planning.plan_task import (
     STANDARD_DISTANCE,
     STANDARD_HEIGHT,
-    nearest_plan,
-    standard,
+    PlanTask,
 )
-from lift_predictor.core.planning.plan_task import PlanTask
 from lift_predictor.core.planning.planner import LiftPlanner
-from lift_predictor.core.sagittal.prediction import PredictedLift2D
+from lift_predictor.core.problem.nearest_lift import relax_placement
+from lift_predictor.core.problem.prediction import NearestLift, Prediction
 
 TASK = PlanTask(
     'to a shelf', 5.0, (0.3, 0.3, 0.2), (0.4, 0.0, 0.5), (0.45, 0.0, 1.2), feet=(0.0, 0.0)
 )
 
 
-def outcome(feasible: bool) -> PredictedLift2D:
+def outcome(feasible: bool) -> Prediction:
     status = SolveStatus.OK if feasible else SolveStatus.PREDICTOR_UNREACHABLE
-    return PredictedLift2D.failed('plan', 5.0, 1.0, SolveReport(status, 'task.end: too far'))
+    report = SolveReport(status, 'task.end: too far')
+    return Prediction(model='sagittal', lift_id='plan', box_mass=5.0, duration=1.0, report=report)
+
+
+def nearest_plan(plan, task: PlanTask) -> NearestLift | None:
+    for ways in standard_ways(task):
+
+        def attempt(fraction: float, ways=ways) -> Prediction:
+            return plan(replace(task, **{name: way.at(fraction) for name, way in ways.items()}))
+
+        found = relax_placement(attempt, outcome(False), ways)
+        if found is not None:
+            return found
+    return None
 
 
 def test_standard_location_is_that_of_the_lifting_equation() -> None:
@@ -43,13 +56,13 @@ def test_only_the_place_at_fault_is_moved(fault: str, other: str) -> None:
     asked = replace(TASK, **{fault: (0.9, 0.0, 1.4)})
     done = []
 
-    def plan(task: PlanTask) -> PredictedLift2D:
+    def plan(task: PlanTask) -> Prediction:
         feasible = getattr(task, fault)[2] <= 1.0
         if feasible:
             done.append(task)
         return outcome(feasible)
 
-    nearest = nearest_plan(plan, asked, outcome(False))
+    nearest = nearest_plan(plan, asked)
     assert nearest is not None
     assert getattr(done[-1], other) == getattr(asked, other)
     assert getattr(done[-1], fault)[2] == pytest.approx(1.0, abs=5e-3)
@@ -58,7 +71,7 @@ def test_only_the_place_at_fault_is_moved(fault: str, other: str) -> None:
 
 
 def test_nothing_is_offered_where_nothing_works() -> None:
-    assert nearest_plan(lambda task: outcome(False), TASK, outcome(False)) is None
+    assert nearest_plan(lambda task: outcome(False), TASK) is None
 
 
 def test_too_heavy_a_plan_gives_the_largest_mass(subject) -> None:

@@ -11,10 +11,8 @@ import numpy as np
 import pytest
 
 from human_model.report import SolveStatus
-from lift_predictor.core.exceptions import CancelledError, PlanError, UnreachableError
-from lift_predictor.core.maximum_weight import Weighting
+from lift_predictor.core.exceptions import CancelledError, PlanError
 from lift_predictor.core.options import PredictorOptions
-from lift_predictor.core.planning.feet import place_feet
 from lift_predictor.core.planning.plan_task import PlanTask
 from lift_predictor.core.planning.planner import LiftPlanner
 from lift_predictor.core.planning.summary import summarise
@@ -56,7 +54,7 @@ def test_technique_costs_effort_and_is_kept(planner, subject, free) -> None:
     assert squat.report.ok, squat.report.message
     assert 0.0 <= squat.index <= 30.0
     assert squat.report.objective > free.report.objective
-    assert squat.binding
+    assert squat.prediction.active_constraints
 
 
 def test_summary_agrees_with_the_objective(free) -> None:
@@ -76,10 +74,10 @@ def test_free_feet_are_at_least_as_good_as_any_place_tried(planner, subject) -> 
     assert len(planned.placements) >= 5
     best = min(placement.value for placement in planned.placements)
     assert planned.report.objective <= best * (1.0 + 1e-6)
-    near = TASK.start[0] - planned.ankle
+    near = TASK.start[0] - planned.feet.forward
     assert 0.25 - 1e-9 <= near <= 0.63 + 1e-9
     assert [s.stage for s in stages].index('lift') >= 5
-    given = planner.plan(subject, replace(TASK, feet=(planned.ankle, 0.0)))
+    given = planner.plan(subject, replace(TASK, feet=(planned.feet.forward, 0.0)))
     assert given.report.objective == pytest.approx(planned.report.objective, rel=1e-3)
 
 
@@ -89,7 +87,7 @@ def test_largest_mass_is_heavier_than_what_can_be_lifted_with_less_effort(
     heaviest = planner.plan(subject, replace(TASK, box_mass=None))
     assert heaviest.report.ok, heaviest.report.message
     assert heaviest.prediction.box_mass > 12.0
-    assert any('torque limit' in name for name in heaviest.binding)
+    assert any('torque limit' in name for name in heaviest.prediction.active_constraints)
     # The default weighting leaves some weight for less effort: twice as much is beyond both.
     heavier = replace(TASK, box_mass=2.0 * heaviest.prediction.box_mass)
     too_heavy = planner.plan(subject, heavier)
@@ -104,8 +102,9 @@ def test_out_of_reach_is_a_report(planner, subject) -> None:
     assert high.report.status is SolveStatus.PREDICTOR_UNREACHABLE
     assert 'task.end' in high.report.message
     nowhere = replace(TASK, end=(0.55, 0.0, 2.4), feet=None)
-    with pytest.raises(UnreachableError, match=r'task\.feet: from none of 5 places'):
-        place_feet(planner.predictor, nowhere, Weighting())
+    none = planner.plan(subject, nowhere)
+    assert none.report.status is SolveStatus.PREDICTOR_UNREACHABLE
+    assert 'task.feet: from none of 5 places' in none.report.message
     flat = LiftPlanner(LiftPredictor(PredictorOptions(dimension='2d')))
     aside = flat.plan(subject, replace(TASK, end=(0.4, 0.4, 1.0)))
     assert aside.report.status is SolveStatus.PREDICTOR_BAD_INPUT

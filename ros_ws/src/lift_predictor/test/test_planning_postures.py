@@ -13,10 +13,11 @@ from hypothesis import strategies as st
 
 from lift_predictor.core.exceptions import PlanError, UnreachableError
 from lift_predictor.core.least_squares import minimise
-from lift_predictor.core.planning.build import build_plan, plan_parameters
+from lift_predictor.core.models.sagittal.kinematics import chain_positions
+from lift_predictor.core.models.sagittal.lowering import stoop_squat_index
+from lift_predictor.core.models.sagittal.plan import build_plan, plan_parameters
 from lift_predictor.core.planning.plan_task import DEFAULT_DURATION, PlanTask
-from lift_predictor.core.planning.technique import stoop_squat_index, technique, techniques
-from lift_predictor.core.sagittal.kinematics import chain_positions
+from lift_predictor.core.planning.technique import technique, techniques
 
 TASK = PlanTask(
     'shelf', 12.0, (0.238, 0.305, 0.127), (0.35, 0.0, 0.1135), (0.55, 0.0, 0.9635), feet=(0.0, 0.0)
@@ -59,7 +60,7 @@ def test_window_of_a_technique_lies_round_a_posture_of_it(person, name: str) -> 
     bounds = plan.task.bounds
     assert np.all(np.isfinite(bounds.posture_lower[[0, 2]]))
     assert np.all(np.isinf(bounds.posture_lower[1]))
-    for pair in plan.pairs:
+    for pair in plan.ends:
         index = stoop_squat_index(pair[:1], person, plan.task.parameters)[0]
         assert technique(name).holds(index)
         assert np.all(pair >= bounds.posture_lower[[0, 2]])
@@ -78,7 +79,7 @@ def test_end_postures_hold_the_box_clear_and_in_balance(person, low, high, begin
     plan = build_plan(person, task)
     assert np.all(np.isinf(plan.task.bounds.posture_lower))
     rear, front = plan.task.parameters.support
-    for pair in plan.pairs:
+    for pair in plan.ends:
         state = chain_positions(pair, plan.task.parameters)
         np.testing.assert_allclose(state.joints['hand'], plan.task.bounds.hand, atol=1e-4)
         assert state.gaps.min() > -1.1e-3

@@ -12,7 +12,7 @@ from scipy.interpolate import BSpline
 
 from lift_predictor.core.bspline import RestToRestSpline, simpson_weights
 from lift_predictor.core.exceptions import SplineError
-from lift_predictor.core.sagittal.grid import Grid
+from lift_predictor.core.models.sagittal.grid import SagittalGrid
 
 
 @given(n_control=st.integers(5, 12), seed=st.integers(0, 2**32 - 1))
@@ -82,14 +82,14 @@ def test_refuses_too_few_control_points(n_control: int) -> None:
     with pytest.raises(SplineError, match='at least 7'):
         RestToRestSpline(6, 'acceleration')
     with pytest.raises(SplineError, match="'jerk': not one of velocity, acceleration"):
-        Grid(7, 25, 'jerk')
+        SagittalGrid(7, 25, 'jerk')
 
 
 @pytest.mark.parametrize('n_nodes', [5, 8, 24, 26])
 def test_refuses_too_few_or_unaligned_nodes(n_nodes: int) -> None:
     """Fewer than 2 (m - 3) + 1 nodes let the optimiser cheat; Simpson panels end at knots."""
     with pytest.raises(SplineError, match=f'n_nodes = {n_nodes}'):
-        Grid(7, n_nodes)
+        SagittalGrid(7, n_nodes)
 
 
 def test_refuses_times_outside_the_lift() -> None:

@@ -7,15 +7,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from lift_predictor.core.sagittal.comparison import (
-    COMPARED_JOINTS,
-    compare,
-    pearson,
-    rms_difference,
-)
-from lift_predictor.core.sagittal.evaluation import evaluate
-from lift_predictor.core.sagittal.parameters import JOINTS
-from lift_predictor.core.sagittal.task import build_task
+from lift_predictor.core.models.sagittal.lift_model import COMPARED_JOINTS
+from lift_predictor.core.models.sagittal.parameters import JOINTS
+from lift_predictor.core.models.sagittal.task import build_task
+from lift_predictor.core.problem.comparison import compare, pearson, rms_difference
 
 
 def test_pearson_and_rms() -> None:
@@ -30,10 +25,11 @@ def test_pearson_and_rms() -> None:
 def test_a_lift_against_itself_is_no_distance(make_lift, outcome, predictor, person) -> None:
     result = outcome(7.0)
     task = build_task(person, result.lift, result.box)
-    report = predictor.programme.report
+    model = predictor.sagittal.model
     recorded = task.measured
-    loads = evaluate(report, recorded.q, recorded.dq, recorded.ddq, task.parameters)
-    same = compare(report, task, recorded.time, recorded.q, loads, 1.0)
+    coordinates = (recorded.q, recorded.dq, recorded.ddq)
+    loads = model.loads(task, coordinates, task.parameters.box_mass)
+    same = compare(model.compared_curves(task, recorded.time, recorded.q, loads, 1.0))
     np.testing.assert_allclose(same.joint_rmse, 0.0, atol=1e-9)
     np.testing.assert_allclose(same.joint_pearson, 1.0)
     # The recorded forces come from exact derivatives, these from the recorded angles.

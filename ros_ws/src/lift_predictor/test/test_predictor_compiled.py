@@ -13,19 +13,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lift_predictor.core.sagittal.grid import Grid
-from lift_predictor.core.sagittal.parameters import LiftParameters
+from lift_predictor.core.models.sagittal.grid import SagittalGrid
+from lift_predictor.core.models.sagittal.parameters import LiftParameters
 from lift_predictor.core.solvers import cache, compiled
 from lift_predictor.core.solvers.cache import find_compiler
 from lift_predictor.core.solvers.compiled import build_programme, content_hash
 
-GRID = Grid(5, 5)
+GRID = SagittalGrid(5, 5)
 
 
 BUILD = """
 from lift_predictor.core.solvers.compiled import build_programme
-from lift_predictor.core.sagittal.grid import Grid
-print(build_programme(Grid(5, 5)).backend)
+from lift_predictor.core.models.sagittal.grid import SagittalGrid
+print(build_programme(SagittalGrid(5, 5)).backend)
 """
 
 
@@ -103,7 +103,7 @@ def test_hash_depends_on_everything_that_goes_in(
     compiler.chmod(0o755)
     first = content_hash(GRID, str(compiler))
     assert content_hash(GRID, str(compiler)) == first
-    assert content_hash(Grid(5, 9), str(compiler)) != first
+    assert content_hash(SagittalGrid(5, 9), str(compiler)) != first
     monkeypatch.setattr(compiled, 'FLAGS', ('-O0',))
     assert content_hash(GRID, str(compiler)) != first
     monkeypatch.undo()

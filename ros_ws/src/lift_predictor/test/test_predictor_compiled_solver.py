@@ -11,15 +11,16 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from lift_predictor.core.sagittal.grid import Grid
-from lift_predictor.core.sagittal.person import Person
-from lift_predictor.core.sagittal.programme import (
+from lift_predictor.core.models.sagittal.assembly import (
     sagittal_assembler,
     sagittal_library,
-    sagittal_programme,
+    sagittal_nlp,
 )
-from lift_predictor.core.sagittal.starts import make_starts
-from lift_predictor.core.sagittal.task import Box, build_task
+from lift_predictor.core.models.sagittal.grid import SagittalGrid
+from lift_predictor.core.models.sagittal.person import Person
+from lift_predictor.core.models.sagittal.starts import make_starts
+from lift_predictor.core.models.sagittal.task import build_task
+from lift_predictor.core.problem.task import Box
 from lift_predictor.core.solvers import cache, interior_point
 from lift_predictor.core.solvers.layout import Channel, Group
 from lift_predictor.core.solvers.library import load_library
@@ -31,7 +32,7 @@ from lift_predictor.core.solvers.spline_nlp import SplineNlp, make_assembler
 pytestmark = pytest.mark.skipif(
     cache.find_compiler() is None, reason='no C compiler on this machine'
 )
-GRID = Grid(7, 25)
+GRID = SagittalGrid(7, 25)
 
 
 @pytest.fixture(scope='module')
@@ -40,7 +41,7 @@ def lift(make_lift, person: Person) -> Callable[[float], tuple[SplineNlp, list[n
 
     def make(mass: float) -> tuple[SplineNlp, list[np.ndarray]]:
         task = build_task(person, make_lift(mass), Box(mass, 0.238))
-        programme = sagittal_programme(assembler, GRID, task.parameters.pack(), task.bounds)
+        programme = sagittal_nlp(assembler, GRID, task.parameters.pack(), task.bounds)
         starts = [
             np.append(start.control.ravel(), mass) for start in make_starts(task, GRID.spline)
         ]

@@ -14,8 +14,8 @@ from lifting_interfaces.msg import SolveReport, Task
 
 from lift_predictor import conversions
 from lift_predictor.core.exceptions import TaskError
-from lift_predictor.core.sagittal.task import Box
-from lift_predictor.core.sagittal.verify import TOLERANCE
+from lift_predictor.core.models.sagittal.verify import TOLERANCE
+from lift_predictor.core.problem.task import Box
 
 UNKNOWN = Point(x=np.nan, y=np.nan, z=np.nan)
 
@@ -61,7 +61,7 @@ def test_prediction_can_be_read_alone(outcome, subject) -> None:
 def test_failed_prediction_carries_no_data(predictor, make_lift, subject) -> None:
     lift = make_lift(7.0)
     box = Box(7.0, 0.238, end=np.array([1.6, 0.0, 1.0]))
-    failed = predictor.predict(lift, box)
+    failed = predictor.predict(subject, lift, box)
     message = conversions.prediction_to_msg(failed, lift, subject)
     assert message.report.status == SolveReport.PREDICTOR_UNREACHABLE
     assert 'hand position' in message.report.message

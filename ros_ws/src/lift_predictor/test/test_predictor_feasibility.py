@@ -10,25 +10,25 @@ import numpy as np
 import pytest
 
 from human_model.report import SolveReport, SolveStatus
-from lift_predictor.core.exceptions import TaskError
-from lift_predictor.core.nearest_lift import (
+from lift_predictor.core.models.sagittal.way import StraightWay
+from lift_predictor.core.predictor import LiftPredictor
+from lift_predictor.core.problem.nearest_lift import (
     PLACE_TOLERANCE,
     NearestLift,
-    closer_lift,
     first_limit,
+    missing_way,
+    relax_placement,
     with_nearest,
 )
-from lift_predictor.core.predictor import LiftPredictor
-from lift_predictor.core.sagittal.feasibility import missing_way
-from lift_predictor.core.sagittal.prediction import PredictedLift2D
-from lift_predictor.core.sagittal.task import Box
+from lift_predictor.core.problem.prediction import Prediction
+from lift_predictor.core.problem.task import Box
 
 DEPTH = 0.238
 
 
 @pytest.fixture(scope='module')
-def too_heavy(predictor, make_lift):
-    return predictor.predict(make_lift(7.0), Box(40.0, DEPTH))
+def too_heavy(subject, predictor, make_lift):
+    return predictor.predict(subject, make_lift(7.0), Box(40.0, DEPTH))
 
 
 def test_too_heavy_a_box_names_a_torque_and_the_mass_that_can_be_lifted(too_heavy) -> None:
@@ -47,14 +47,14 @@ def test_too_heavy_a_box_names_a_torque_and_the_mass_that_can_be_lifted(too_heav
 
 
 def test_the_nearest_mass_can_be_lifted_and_a_little_more_cannot(
-    predictor, make_lift, too_heavy
+    subject, predictor, make_lift, too_heavy
 ) -> None:
     # Before the margin between the nodes.
-    mass = max(run.box_mass for run in too_heavy.nearest.prediction.optima)
-    lighter = predictor.predict(make_lift(7.0), Box(0.97 * mass, DEPTH))
+    mass = max(run.box_mass for run in too_heavy.nearest.prediction.runs)
+    lighter = predictor.predict(subject, make_lift(7.0), Box(0.97 * mass, DEPTH))
     assert lighter.report.ok, lighter.report.message
     assert lighter.nearest is None
-    heavier = predictor.predict(make_lift(7.0), Box(1.03 * mass, DEPTH))
+    heavier = predictor.predict(subject, make_lift(7.0), Box(1.03 * mass, DEPTH))
     assert heavier.report.status is SolveStatus.PREDICTOR_INFEASIBLE
     assert heavier.nearest.prediction.box_mass == pytest.approx(mass, rel=0.02)
 
@@ -64,11 +64,11 @@ def test_the_nearest_mass_can_be_lifted_and_a_little_more_cannot(
     [((0.0, 0.0, 0.6), 'mm lower than asked for'), ((0.5, 0.0, 0.0), 'mm nearer than asked for')],
 )
 def test_places_out_of_reach_give_the_nearest_that_can_be_reached(
-    predictor, make_lift, shift, words
+    subject, predictor, make_lift, shift, words
 ) -> None:
     lift = make_lift(7.0)
     recorded = lift.motion.box_position[-1]
-    result = predictor.predict(lift, Box(7.0, DEPTH, end=recorded + shift))
+    result = predictor.predict(subject, lift, Box(7.0, DEPTH, end=recorded + shift))
     assert result.report.status is SolveStatus.PREDICTOR_UNREACHABLE
     assert result.lift is None
     assert words in result.report.message
@@ -87,37 +87,40 @@ def test_places_out_of_reach_give_the_nearest_that_can_be_reached(
 
 def test_too_weak_for_the_posture_alone_has_no_nearest_lift(subject, make_lift) -> None:
     weak = LiftPredictor()
-    weak.configure(replace(subject, strength_z=-2.0))
-    result = weak.predict(make_lift(7.0), Box(7.0, DEPTH))
+    result = weak.predict(replace(subject, strength_z=-2.0), make_lift(7.0), Box(7.0, DEPTH))
     assert result.report.status is SolveStatus.PREDICTOR_INFEASIBLE
     assert result.nearest is None
     assert 'largest violation' in result.report.message
 
 
-def outcome(status: SolveStatus = SolveStatus.OK, message: str = '') -> PredictedLift2D:
-    return PredictedLift2D.failed('lift', 7.0, 1.0, SolveReport(status, message))
+def outcome(status: SolveStatus = SolveStatus.OK, message: str = '') -> Prediction:
+    report = SolveReport(status, message)
+    return Prediction(model='sagittal', lift_id='lift', box_mass=7.0, duration=1.0, report=report)
 
 
 def test_bisection_ends_within_its_tolerance() -> None:
-    border, way = 0.637, 0.8
+    border, length = 0.637, 0.8
+    way = StraightWay((0.0, 0.0, 0.0), (length, 0.0, 0.0))
     tried = []
 
-    def attempt(share: float) -> PredictedLift2D:
+    def attempt(share: float) -> Prediction:
         tried.append(share)
         if share <= border:
             return outcome()
         return outcome(SolveStatus.PREDICTOR_UNREACHABLE, f'arm too short: at {share:g}')
 
-    nearest = closer_lift(attempt, attempt(1.0), way, lambda share: f'{share:.4f}')
-    share = float(nearest.change)
-    assert 0.0 <= (border - share) * way <= PLACE_TOLERANCE
+    nearest = relax_placement(attempt, attempt(1.0), {'end': way})
+    missing = float(nearest.change.split(' mm')[0].removeprefix('the end ')) / 1e3
+    assert 0.0 <= border * length - (length - missing) <= PLACE_TOLERANCE + 1e-3
     assert nearest.limit.startswith('reach of the hands (arm too short; at 0.6')
-    assert len(tried) <= 2 + np.log2(way / PLACE_TOLERANCE) + 1
+    assert len(tried) <= 2 + np.log2(length / PLACE_TOLERANCE) + 1
 
 
 def test_no_nearest_place_if_the_recorded_one_fails() -> None:
     failed = outcome(SolveStatus.PREDICTOR_INFEASIBLE, 'no')
-    assert closer_lift(lambda share: failed, failed, 1.0, str) is None
+    ways = {'end': StraightWay((0.0, 0.0, 0.0), (1.0, 0.0, 0.0))}
+    assert relax_placement(lambda fraction: failed, failed, ways) is None
+    assert relax_placement(lambda fraction: outcome(), failed, {}) is None
     assert with_nearest(failed, None) is failed
 
 
@@ -137,9 +140,9 @@ def test_limits_of_the_person_come_before_postures_of_the_recording() -> None:
 
 
 def test_missing_way_in_words() -> None:
-    way = np.array([[0.0, 0.0], [-0.1, 0.4]])
-    assert missing_way(way, 0.75) == (
+    none, here = (0.0, 0.0, 0.0), StraightWay((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    ways = {'start': here, 'end': StraightWay(none, (-0.1, 0.0, 0.4))}
+    assert missing_way(ways, 0.75) == (
         'the end 25 mm farther forward and 100 mm lower than asked for'
     )
-    with pytest.raises(TaskError, match='recorded'):
-        missing_way(np.zeros((2, 2)), 0.5)
+    assert missing_way({'start': here}, 0.5) == 'the same places to half a millimetre'

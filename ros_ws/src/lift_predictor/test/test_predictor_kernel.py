@@ -13,14 +13,14 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from lift_predictor.core.sagittal.grid import Grid, LiftBounds
-from lift_predictor.core.sagittal.nlp import programme_functions
-from lift_predictor.core.sagittal.parameters import LiftParameters
-from lift_predictor.core.sagittal.programme import (
+from lift_predictor.core.models.sagittal.assembly import (
     sagittal_assembler,
     sagittal_library,
-    sagittal_programme,
+    sagittal_nlp,
 )
+from lift_predictor.core.models.sagittal.grid import LiftBounds, SagittalGrid
+from lift_predictor.core.models.sagittal.nlp import programme_functions
+from lift_predictor.core.models.sagittal.parameters import LiftParameters
 from lift_predictor.core.solvers import cache, library
 from lift_predictor.core.solvers.layout import Channel, Group
 from lift_predictor.core.solvers.library import NodeLibrary, load_library
@@ -30,7 +30,7 @@ from lift_predictor.core.solvers.spline_nlp import SplineNlp, make_assembler
 needs_compiler = pytest.mark.skipif(
     cache.find_compiler() is None, reason='no C compiler on this machine'
 )
-GRIDS = (Grid(7, 25), Grid(5, 5), Grid(6, 13))
+GRIDS = (SagittalGrid(7, 25), SagittalGrid(5, 5), SagittalGrid(6, 13))
 
 
 def every_operation() -> list[NodeFunction]:
@@ -54,7 +54,7 @@ def every_operation() -> list[NodeFunction]:
 
 def programme_of(functions: NodeLibrary, n_points: int) -> SplineNlp:
     """Two components on a spline of 6 control points, one free value at each instant."""
-    spline = Grid(8, 11).spline
+    spline = SagittalGrid(8, 11).spline
     times = np.linspace(0.0, 1.0, n_points)
     basis = np.stack([spline.basis(times, order) for order in range(3)])
     at = basis.shape[2] * 2
@@ -111,7 +111,7 @@ def sagittal() -> NodeLibrary:
     return sagittal_library()
 
 
-def bounds(grid: Grid, mass: float) -> LiftBounds:
+def bounds(grid: SagittalGrid, mass: float) -> LiftBounds:
     posture = np.full((3, 6), 3.0)
     return LiftBounds(
         np.full(6, -3.0), np.full(6, 3.0), -posture, posture, np.ones((2, 2)), np.full(2, mass)
@@ -119,17 +119,17 @@ def bounds(grid: Grid, mass: float) -> LiftBounds:
 
 
 @pytest.mark.parametrize('grid', GRIDS, ids=str)
-def test_sagittal_programme_is_the_one_of_ipopt(
-    sagittal: NodeLibrary, parameters: LiftParameters, grid: Grid
+def test_sagittal_nlp_is_the_one_of_ipopt(
+    sagittal: NodeLibrary, parameters: LiftParameters, grid: SagittalGrid
 ) -> None:
     parameters = replace(parameters, objective=np.array([0.4, 0.8]))
-    programme = sagittal_programme(
+    programme = sagittal_nlp(
         sagittal_assembler(sagittal, grid), grid, parameters.pack(), bounds(grid, 7.0)
     )
     functions = {function.name(): function for function in programme_functions(grid)}
     rng = np.random.default_rng(3)
-    x = np.append(rng.uniform(0.1, 0.7, grid.n_angles), 7.0)
-    p, m = parameters.pack(), len(grid.row_names)
+    x = np.append(rng.uniform(0.1, 0.7, grid.n_splined), 7.0)
+    p, m = parameters.pack(), len(grid.constraint_names)
     f, gradient = functions['nlp_grad_f'](x, p)
     g, jacobian = (np.asarray(value) for value in functions['nlp_jac_g'](x, p))
     point = programme.linearise(x)
@@ -151,12 +151,12 @@ def test_derivatives_against_finite_differences(
     sagittal: NodeLibrary, parameters: LiftParameters
 ) -> None:
     grid = GRIDS[0]
-    programme = sagittal_programme(
+    programme = sagittal_nlp(
         sagittal_assembler(sagittal, grid), grid, parameters.pack(), bounds(grid, 7.0)
     )
     rng = np.random.default_rng(8)
-    x = np.append(rng.uniform(0.1, 0.7, grid.n_angles), 7.0)
-    y, direction = rng.normal(size=len(grid.row_names)), rng.normal(size=grid.n_variables)
+    x = np.append(rng.uniform(0.1, 0.7, grid.n_splined), 7.0)
+    y, direction = rng.normal(size=len(grid.constraint_names)), rng.normal(size=grid.n_variables)
     h = 1e-6
     (f1, g1), (f0, g0) = (programme.values(x + sign * h * direction) for sign in (1, -1))
     point = programme.linearise(x)
@@ -177,7 +177,7 @@ def test_derivatives_against_finite_differences(
 def test_library_in_the_cache_loads_without_casadi(sagittal: NodeLibrary) -> None:
     code = (
         'import sys\n'
-        'from lift_predictor.core.sagittal.programme import sagittal_library\n'
+        'from lift_predictor.core.models.sagittal.assembly import sagittal_library\n'
         'print(sagittal_library().backend)\n'
         "print([name for name in ('casadi', 'scipy', 'numba') if name in sys.modules])\n"
     )

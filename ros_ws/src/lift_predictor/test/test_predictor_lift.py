@@ -13,15 +13,15 @@ from scipy.integrate import cumulative_trapezoid
 from human_model.report import SolveReport, SolveStatus
 from human_model.skeleton import ExternalForce
 from human_model.subject import Subject
-from lift_predictor.core.exceptions import TaskError
+from lift_predictor.core.models.sagittal.parameters import JOINTS
+from lift_predictor.core.models.sagittal.task import build_task
+from lift_predictor.core.models.sagittal.verify import TOLERANCE
 from lift_predictor.core.options import PredictorOptions
 from lift_predictor.core.predictor import LiftPredictor
-from lift_predictor.core.sagittal.parameters import JOINTS
-from lift_predictor.core.sagittal.task import Box, build_task
-from lift_predictor.core.sagittal.verify import TOLERANCE
+from lift_predictor.core.problem.run import Start
+from lift_predictor.core.problem.task import Box
 from lift_predictor.core.solvers.compiled import build_programme
 from lift_predictor.core.solvers.ipopt import LiftSolver
-from lift_predictor.core.solvers.solver_run import Start
 
 MASSES = (0.0, 7.0, 12.0)
 
@@ -30,10 +30,10 @@ MASSES = (0.0, 7.0, 12.0)
 def test_solved_with_small_kkt_residuals_and_verified_between_the_nodes(outcome, mass) -> None:
     predicted = outcome(mass).predicted
     assert predicted.report.ok, predicted.report.message
-    best = predicted.optima[0]
-    assert best.violation < 1e-7
-    assert best.stationarity < 1e-6
-    assert best.complementarity < 1e-6
+    best = predicted.runs[0]
+    assert best.solution.primal < 1e-7
+    assert best.solution.dual < 1e-6
+    assert best.solution.complementarity < 1e-6
     check = predicted.verification
     assert check is not None and check.n_points == 241
     assert set(check.violation) == set(TOLERANCE)
@@ -43,7 +43,7 @@ def test_solved_with_small_kkt_residuals_and_verified_between_the_nodes(outcome,
 
 @pytest.mark.parametrize('mass', MASSES)
 def test_all_starts_end_at_the_same_optimum(outcome, mass) -> None:
-    optima = {run.start: run for run in reversed(outcome(mass).predicted.optima[-3:])}
+    optima = {run.start: run for run in reversed(outcome(mass).predicted.runs[-3:])}
     assert set(optima) == {'recorded motion', 'smooth step', 'clearance arc'}
     objectives = [run.objective for run in optima.values()]
     assert max(objectives) <= min(objectives) * 1.001
@@ -55,9 +55,9 @@ def test_random_starts_find_nothing_better(outcome, predictor, person, mass) -> 
     result = outcome(mass)
     task = build_task(person, result.lift, result.box)
     rng = np.random.default_rng(7)
-    solver = LiftSolver(build_programme(predictor.programme.grid), time_limit=20.0)
+    solver = LiftSolver(build_programme(predictor.sagittal.model.grid), time_limit=20.0)
     low, high = person.angle_lower, person.angle_upper
-    shape = (predictor.programme.grid.spline.n_free, 6)
+    shape = (predictor.sagittal.model.grid.spline.n_free, 6)
     vector = task.parameters.pack()
     runs = [
         solver.solve(vector, task.bounds, Start(f'random {k}', rng.uniform(low, high, shape)))
@@ -65,7 +65,7 @@ def test_random_starts_find_nothing_better(outcome, predictor, person, mass) -> 
     ]
     solved = [run.objective for run in runs if run.converged]
     assert solved, [run.status for run in runs]
-    best = min(run.objective for run in result.predicted.optima[-3:] if run.converged)
+    best = min(run.objective for run in result.predicted.runs[-3:] if run.converged)
     assert best <= min(solved) * 1.001
 
 
@@ -146,7 +146,7 @@ def test_both_hands_carry_half_of_weight_and_inertia(outcome) -> None:
     )
 
 
-def test_turned_laboratory_gives_the_same_lift(predictor, outcome) -> None:
+def test_turned_laboratory_gives_the_same_lift(subject, predictor, outcome) -> None:
     from human_model.frames import matrix_from_quaternion, quaternion_from_matrix
 
     result = outcome(7.0)
@@ -160,7 +160,7 @@ def test_turned_laboratory_gives_the_same_lift(predictor, outcome) -> None:
         ground_force=motion.ground_force @ turn.T,
         frames=quaternion_from_matrix(turn @ matrix_from_quaternion(motion.frames)),
     )
-    other = predictor.predict(replace(result.lift, motion=moved), result.box)
+    other = predictor.predict(subject, replace(result.lift, motion=moved), result.box)
     assert other.report.ok
     assert other.report.objective == pytest.approx(result.predicted.report.objective, rel=1e-6)
     same, there = result.predicted.lift.motion, other.lift.motion
@@ -183,34 +183,27 @@ def refused(result, status: SolveStatus, *words: str) -> None:
 
 def test_too_heavy_a_box_is_infeasible_and_names_the_constraint(subject, make_lift) -> None:
     patient = LiftPredictor(PredictorOptions(time_limit=60.0))
-    patient.configure(subject)
-    result, comparison = patient.predict_and_compare(make_lift(30.0), Box(30.0, 0.238))
+    result = patient.predict(subject, make_lift(30.0), Box(30.0, 0.238))
     refused(result, SolveStatus.PREDICTOR_INFEASIBLE, 'no feasible motion', 'joint torque limit')
-    assert comparison is None
+    assert result.comparison is None
 
 
-def test_unreachable_target_is_named(predictor, make_lift) -> None:
+def test_unreachable_target_is_named(subject, predictor, make_lift) -> None:
     box = Box(7.0, 0.238, end=np.array([1.6, 0.0, 1.0]))
-    result = predictor.predict(make_lift(7.0), box)
+    result = predictor.predict(subject, make_lift(7.0), box)
     refused(result, SolveStatus.PREDICTOR_UNREACHABLE, 'hand position (4.6) at the end', 'mm')
 
 
-def test_bad_recording_is_not_predicted(predictor, make_lift) -> None:
+def test_bad_recording_is_not_predicted(subject, predictor, make_lift) -> None:
     bad = SolveReport(SolveStatus.TRACKER_MARKERS_MISSING, 'marker T10 is missing')
-    result = predictor.predict(replace(make_lift(7.0), report=bad), Box(7.0, 0.238))
+    result = predictor.predict(subject, replace(make_lift(7.0), report=bad), Box(7.0, 0.238))
     refused(result, SolveStatus.PREDICTOR_BAD_INPUT, 'TRACKER_MARKERS_MISSING', 'T10')
 
 
 def test_time_limit_is_kept(subject: Subject, make_lift) -> None:
     hurried = LiftPredictor(PredictorOptions(time_limit=1e-3))
-    hurried.configure(subject)
-    result = hurried.predict(make_lift(7.0), Box(7.0, 0.238))
+    result = hurried.predict(subject, make_lift(7.0), Box(7.0, 0.238))
     refused(result, SolveStatus.PREDICTOR_TIME_LIMIT, 'time limit')
-
-
-def test_no_subject_is_an_error(make_lift) -> None:
-    with pytest.raises(TaskError, match='subject'):
-        LiftPredictor().predict(make_lift(7.0), Box(7.0, 0.238))
 
 
 def test_same_numbers_without_a_compiler(
@@ -218,8 +211,7 @@ def test_same_numbers_without_a_compiler(
 ) -> None:
     monkeypatch.setenv('CC', '/no/such/compiler')
     slow = LiftPredictor()
-    slow.configure(subject)
-    result = slow.predict(outcome(7.0).lift, outcome(7.0).box)
+    result = slow.predict(subject, outcome(7.0).lift, outcome(7.0).box)
     assert result.report.ok
     assert 'virtual machine' in result.report.message
     reference = outcome(7.0).predicted
@@ -235,9 +227,8 @@ def test_free_postures_cost_less_and_the_best_start_is_kept(
     """Without the recorded postures (4.8) the effort cannot be higher."""
     result = outcome(12.0)
     free = LiftPredictor(PredictorOptions(posture_tolerance=3.0))
-    free.configure(subject)
-    predicted = free.predict(result.lift, result.box)
+    predicted = free.predict(subject, result.lift, result.box)
     assert predicted.report.ok
     assert predicted.report.objective < result.predicted.report.objective
-    first_round = [run.objective for run in predicted.optima[-3:] if run.converged]
-    assert predicted.optima[-3].objective == min(first_round)
+    first_round = [run.objective for run in predicted.runs[-3:] if run.converged]
+    assert predicted.runs[-3].objective == min(first_round)

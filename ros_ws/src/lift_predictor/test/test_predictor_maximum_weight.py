@@ -12,49 +12,50 @@ import pytest
 
 from human_model.report import SolveStatus
 from lift_predictor.core.exceptions import TaskError
-from lift_predictor.core.maximum_weight import (
+from lift_predictor.core.models.sagittal.lift_model import POSTURE_TOLERANCES
+from lift_predictor.core.models.sagittal.task import build_task
+from lift_predictor.core.problem.maximum_weight import (
     LARGEST_WEIGHT,
-    POSTURE_TOLERANCES,
     REGULARISATION,
     MaximumWeight,
     Weighting,
     heaviest_box,
-    maximum_weight_task,
-    predict_maximum_weight,
-    solve_maximum_weight,
+    maximum_weight,
 )
-from lift_predictor.core.sagittal.starts import make_starts
-from lift_predictor.core.sagittal.task import Box, build_task
+from lift_predictor.core.problem.run import Start
+from lift_predictor.core.problem.task import Box
 from lift_predictor.core.solvers.compiled import build_programme
 from lift_predictor.core.solvers.ipopt import LiftSolver
-from lift_predictor.core.solvers.solver_run import Start
 
 DEPTH = 0.238
 BOX = Box(7.0, DEPTH)
 
 
 @pytest.fixture(scope='module')
-def open_task(predictor, make_lift):
+def open_task(subject, predictor, make_lift):
     """Return the task with an open mass, and its starts."""
-    task = maximum_weight_task(predictor, make_lift(7.0), BOX)
-    return task, make_starts(task, predictor.programme.grid.spline)
+    model = predictor.sagittal.model
+    task = model.maximum_weight_task(subject, make_lift(7.0), BOX)
+    return task, model.starts(task)
 
 
 @pytest.fixture(scope='module')
 def solve(predictor, open_task):
     """Return a function from w1 to the result."""
-    heaviest = heaviest_box(predictor, *open_task)
+    heaviest = heaviest_box(predictor.sagittal, *open_task)
 
     @cache
     def run(effort: float) -> MaximumWeight:
         weighting = Weighting(effort, 1.0 - effort)
-        return solve_maximum_weight(predictor, *open_task, weighting, heaviest)
+        return maximum_weight(predictor.sagittal, *open_task, weighting, heaviest)
 
     return run
 
 
-def test_default_is_the_weighting_and_tolerances_of_chapter_two(predictor, make_lift) -> None:
-    result = predict_maximum_weight(predictor, make_lift(7.0), BOX)
+def test_default_is_the_weighting_and_tolerances_of_chapter_two(
+    subject, predictor, make_lift
+) -> None:
+    result = predictor.maximum_weight(subject, make_lift(7.0), BOX)
     assert result.report.ok, result.report.message
     assert result.weighting == Weighting(0.15, 0.85)
     assert result.prediction.verification.passed
@@ -62,8 +63,8 @@ def test_default_is_the_weighting_and_tolerances_of_chapter_two(predictor, make_
     assert 0.0 < result.weight < LARGEST_WEIGHT
     assert result.prediction.box_mass == result.prediction.lift.box_mass == result.mass
     assert result.comparison.predicted_effort == pytest.approx(result.effort)
-    assert result.binding
-    assert any('torque limit' in name for name in result.binding)
+    assert result.active_constraints
+    assert any('torque limit' in name for name in result.active_constraints)
     motion, recorded = result.prediction.lift.motion, make_lift(7.0).motion
     for sample, tolerance in zip((0, len(motion) // 2, -1), POSTURE_TOLERANCES, strict=True):
         for joint in ('hip_flexion', 'knee_angle'):
@@ -82,8 +83,8 @@ def test_hands_carry_the_predicted_weight(solve) -> None:
 def test_a_little_less_can_be_lifted_and_a_little_more_cannot(solve, predictor, open_task) -> None:
     task, starts = open_task
     # Before margins between the nodes were asked for: the bounds of these solves have none.
-    heaviest = solve(0.0).prediction.optima[-len(starts)]
-    solver = LiftSolver(build_programme(predictor.programme.grid), 20.0)
+    heaviest = solve(0.0).prediction.runs[-len(starts)]
+    solver = LiftSolver(build_programme(predictor.sagittal.model.grid), 20.0)
     start = heaviest.as_start()
     found = []
     for factor in (0.99, 1.01):
@@ -124,10 +125,10 @@ def test_objective_is_equation_2_11(solve) -> None:
 def test_the_tie_break_costs_next_to_nothing(predictor, open_task, solve) -> None:
     task, starts = open_task
     vector = replace(task.parameters, objective=np.array([0.0, 1.0])).pack()
-    referee = LiftSolver(build_programme(predictor.programme.grid), 20.0)
+    referee = LiftSolver(build_programme(predictor.sagittal.model.grid), 20.0)
     pure = referee.solve_all(vector, task.bounds, starts)[0]
     assert pure.converged
-    first = solve(0.0).prediction.optima[-len(starts)]
+    first = solve(0.0).prediction.runs[-len(starts)]
     assert REGULARISATION > 0.0
     assert first.box_mass == pytest.approx(pure.box_mass, rel=5e-4)
     assert first.box_mass <= pure.box_mass * (1.0 + 1e-6)
@@ -137,9 +138,9 @@ def test_random_starts_find_no_heavier_box(predictor, open_task, solve) -> None:
     task, starts = open_task
     person = task.person
     rng = np.random.default_rng(3)
-    shape = (predictor.programme.grid.spline.n_free, 6)
+    shape = (predictor.sagittal.model.grid.spline.n_free, 6)
     vector = replace(task.parameters, objective=np.array([REGULARISATION, 1.0])).pack()
-    solver = LiftSolver(build_programme(predictor.programme.grid), 20.0)
+    solver = LiftSolver(build_programme(predictor.sagittal.model.grid), 20.0)
     masses = []
     for k in range(5):
         control = rng.uniform(person.angle_lower, person.angle_upper, shape)
@@ -147,7 +148,7 @@ def test_random_starts_find_no_heavier_box(predictor, open_task, solve) -> None:
         if run.converged:
             masses.append(run.box_mass)
     assert masses
-    first = solve(0.0).prediction.optima[-len(starts)]
+    first = solve(0.0).prediction.runs[-len(starts)]
     assert max(masses) <= first.box_mass * 1.001
 
 
@@ -157,18 +158,18 @@ def test_stronger_people_lift_more(subject, predictor, make_lift) -> None:
     strong = LiftPredictor()
     weights = []
     for z in (-0.5, 0.0, 1.0):
-        strong.configure(replace(subject, strength_z=z))
-        weights.append(predict_maximum_weight(strong, make_lift(7.0), BOX).weight)
+        person = replace(subject, strength_z=z)
+        weights.append(strong.maximum_weight(person, make_lift(7.0), BOX).weight)
     assert weights[0] < weights[1] < weights[2]
 
 
-def test_refusals_carry_no_numbers(predictor, make_lift) -> None:
+def test_refusals_carry_no_numbers(subject, predictor, make_lift) -> None:
     far = Box(7.0, DEPTH, end=np.array([1.6, 0.0, 1.0]))
-    result = predict_maximum_weight(predictor, make_lift(7.0), far)
+    result = predictor.maximum_weight(subject, make_lift(7.0), far)
     assert result.report.status is SolveStatus.PREDICTOR_UNREACHABLE
     assert np.isnan([result.mass, result.weight, result.effort, *result.criteria]).all()
     assert result.prediction.lift is None
-    assert result.binding == ()
+    assert result.active_constraints == ()
 
 
 @pytest.mark.parametrize('pair', [(0.5, 0.6), (-0.1, 1.1), (1.0, 0.5)])

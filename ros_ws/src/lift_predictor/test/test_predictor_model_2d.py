@@ -14,18 +14,17 @@ from human_model.skeleton import ExternalForce
 from human_model.strength import JointStrength, coefficient_sets
 from human_model.subject import Subject
 from lift_predictor.core.exceptions import TaskError
-from lift_predictor.core.sagittal.evaluation import SagittalLoads, evaluate
-from lift_predictor.core.sagittal.grid import CENTRES, HAND_SCALE, NODE_ROWS
-from lift_predictor.core.sagittal.kinematics import chain_positions, pelvis_motion
-from lift_predictor.core.sagittal.node_functions import node_functions
-from lift_predictor.core.sagittal.parameters import JOINTS, LiftParameters
-from lift_predictor.core.sagittal.person import Person
-from lift_predictor.core.sagittal.programme import sagittal_library
-from lift_predictor.core.sagittal.report_function import ReportFunction
+from lift_predictor.core.models.sagittal.assembly import sagittal_library
+from lift_predictor.core.models.sagittal.evaluation import SagittalLoads, evaluate
+from lift_predictor.core.models.sagittal.grid import CENTRES, HAND_SCALE, NODE_CONSTRAINTS
+from lift_predictor.core.models.sagittal.kinematics import chain_positions, pelvis_motion
+from lift_predictor.core.models.sagittal.node_functions import node_functions
+from lift_predictor.core.models.sagittal.parameters import JOINTS, LiftParameters
+from lift_predictor.core.models.sagittal.person import Person
 
 N = 12
 FUNCTIONS = node_functions()
-REPORT = ReportFunction(sagittal_library())
+LIBRARY = sagittal_library()
 
 
 @pytest.fixture(scope='module')
@@ -37,7 +36,7 @@ def motion() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 @pytest.fixture(scope='module')
 def loads(parameters: LiftParameters, motion) -> SagittalLoads:
-    return evaluate(REPORT, *motion, parameters)
+    return evaluate(LIBRARY, *motion, parameters)
 
 
 def full_motion(person: Person, parameters: LiftParameters, motion) -> list[np.ndarray]:
@@ -89,7 +88,7 @@ def test_joint_centres_agree_with_the_skeleton(
 def test_power_balance(parameters: LiftParameters, motion) -> None:
     """Power of the joint torques = rate of kinetic and potential energy of body and box."""
     q, dq, ddq = (block[:1] for block in motion)
-    torque = evaluate(REPORT, q, dq, ddq, parameters).torque[0]
+    torque = evaluate(LIBRARY, q, dq, ddq, parameters).torque[0]
 
     def energy(t: float) -> float:
         def centres(at: float) -> np.ndarray:
@@ -123,7 +122,7 @@ def mass_centres(q: np.ndarray, parameters: LiftParameters) -> np.ndarray:
 
 def test_standing_still_puts_the_zmp_under_the_centre_of_mass(parameters: LiftParameters) -> None:
     posture, rest = np.radians([[-20.0, 30.0, 20.0, 30.0, 30.0, 10.0]]), np.zeros((1, 6))
-    loads = evaluate(REPORT, posture, rest, rest, parameters)
+    loads = evaluate(LIBRARY, posture, rest, rest, parameters)
     weight = parameters.total_mass * parameters.gravity
     np.testing.assert_allclose(loads.ground_force[0], [0.0, weight], atol=1e-9)
     expected = chain_positions(posture, parameters).centre_of_mass[0]
@@ -134,7 +133,7 @@ def test_held_box_pulls_at_the_hands(parameters: LiftParameters) -> None:
     """Hand computation: arms straight forward, still: the elbow carries forearm and box."""
     posture = np.array([[0.0, np.pi / 2, 0.0, 0.0, 0.0, 0.0]])
     rest = np.zeros((1, 6))
-    loads = evaluate(REPORT, posture, rest, rest, parameters)
+    loads = evaluate(LIBRARY, posture, rest, rest, parameters)
     mass, com_down, reach = parameters.body[6, 0], -parameters.body[6, 2], -parameters.body[6, 5]
     forward = parameters.body[6, 1]
     # In this posture the forearm points forward: "down" of the segment is forward in the world.
@@ -159,8 +158,8 @@ def test_clearance_row_is_the_distance_of_box_and_circle(
     parameters: LiftParameters, motion, loads: SagittalLoads
 ) -> None:
     gaps = chain_positions(motion[0], parameters).gaps
-    first = NODE_ROWS.index('collision (4.5) of the box with the shank')
-    rows = loads.rows[:, first : first + len(parameters.circle)]
+    first = NODE_CONSTRAINTS.index('collision (4.5) of the box with the shank')
+    rows = loads.constraints[:, first : first + len(parameters.circle)]
     used = parameters.circle[:, 2] > 0.0
     reach = (parameters.circle[:, 2] + parameters.box_radius)[used]
     np.testing.assert_allclose(
@@ -170,15 +169,15 @@ def test_clearance_row_is_the_distance_of_box_and_circle(
 
 
 def test_height_row_is_the_grip_over_its_lowest_place(parameters: LiftParameters, motion) -> None:
-    rows = evaluate(REPORT, *motion, replace(parameters, lowest_grip=0.3)).rows
+    rows = evaluate(LIBRARY, *motion, replace(parameters, lowest_grip=0.3)).constraints
     hand = chain_positions(motion[0], parameters).joints['hand'][:, 1]
-    at = NODE_ROWS.index('height of the box over the lower of its places')
+    at = NODE_CONSTRAINTS.index('height of the box over the lower of its places')
     np.testing.assert_allclose(rows[:, at] * HAND_SCALE, hand - 0.3, atol=1e-12)
 
 
 def test_circle_switched_off_does_not_constrain(parameters: LiftParameters, motion) -> None:
     off = replace(parameters, circle=np.zeros_like(parameters.circle))
-    rows = evaluate(REPORT, *motion, off).rows
+    rows = evaluate(LIBRARY, *motion, off).constraints
     np.testing.assert_array_equal(rows[:, 8 : 8 + len(off.circle)], 1.0)
     assert np.all(np.isinf(chain_positions(motion[0], off).gaps))
 
@@ -214,7 +213,7 @@ def test_published_link_table_can_be_used(motion) -> None:
         box_from_hand=np.zeros(2),
         lowest_grip=0.0,
     )
-    torque = evaluate(REPORT, *motion, parameters).torque
+    torque = evaluate(LIBRARY, *motion, parameters).torque
     spine, hip = JOINTS.index('lumbar_extension'), JOINTS.index('hip_flexion')
     np.testing.assert_allclose(torque[:, spine], -torque[:, hip], rtol=1e-12)
 

@@ -9,17 +9,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from lift_predictor.core.sagittal.evaluation import evaluate, sample
-from lift_predictor.core.sagittal.grid import HAND_SCALE, NODE_ROWS, Grid, LiftBounds
-from lift_predictor.core.sagittal.nlp import programme_functions
-from lift_predictor.core.sagittal.parameters import LiftParameters
-from lift_predictor.core.sagittal.programme import sagittal_library
-from lift_predictor.core.sagittal.report_function import ReportFunction
+from lift_predictor.core.models.sagittal.assembly import sagittal_library
+from lift_predictor.core.models.sagittal.evaluation import evaluate
+from lift_predictor.core.models.sagittal.grid import (
+    HAND_SCALE,
+    NODE_CONSTRAINTS,
+    LiftBounds,
+    SagittalGrid,
+)
+from lift_predictor.core.models.sagittal.nlp import programme_functions
+from lift_predictor.core.models.sagittal.parameters import LiftParameters
 
-GRID = Grid(6, 7)
+GRID = SagittalGrid(6, 7)
 MASS = np.array([7.0, 30.0])
 FUNCTIONS = {function.name(): function for function in programme_functions(GRID)}
-REPORT = ReportFunction(sagittal_library())
+LIBRARY = sagittal_library()
 
 
 @pytest.fixture(scope='module')
@@ -53,7 +57,7 @@ def test_gradient(point: np.ndarray, vector: np.ndarray) -> None:
 
 def test_jacobian(point: np.ndarray, vector: np.ndarray) -> None:
     g, jacobian = (dense(value) for value in FUNCTIONS['nlp_jac_g'](point, vector))
-    assert g.shape == (len(GRID.row_names), 1)
+    assert g.shape == (len(GRID.constraint_names), 1)
     h = 1e-6
     for i in range(GRID.n_variables):
         step = h * np.eye(GRID.n_variables)[i]
@@ -65,7 +69,7 @@ def test_jacobian(point: np.ndarray, vector: np.ndarray) -> None:
 
 def test_hessian(point: np.ndarray, vector: np.ndarray) -> None:
     rng = np.random.default_rng(2)
-    sigma, multiplier = 0.7, rng.normal(size=len(GRID.row_names))
+    sigma, multiplier = 0.7, rng.normal(size=len(GRID.constraint_names))
     hessian = dense(FUNCTIONS['nlp_hess_l'](point, vector, sigma, multiplier))
     assert np.all(np.tril(hessian, -1) == 0.0)
     full = hessian + np.triu(hessian, 1).T
@@ -83,12 +87,12 @@ def test_hessian(point: np.ndarray, vector: np.ndarray) -> None:
 def test_rows_and_objective_are_those_of_the_model(
     point: np.ndarray, vector: np.ndarray, parameters: LiftParameters
 ) -> None:
-    control = point[: GRID.n_angles].reshape(GRID.spline.n_free, 6)
-    q, dq, ddq = sample(GRID.spline, control, GRID.times, parameters.duration)
-    loads = evaluate(REPORT, q, dq, ddq, parameters)
+    control = point[: GRID.n_splined].reshape(GRID.spline.n_free, 6)
+    q, dq, ddq = GRID.spline.sample(control, GRID.times, parameters.duration)
+    loads = evaluate(LIBRARY, q, dq, ddq, parameters)
     g = dense(FUNCTIONS['nlp_g'](point, vector))[:, 0]
-    n_rows = GRID.n_nodes * len(NODE_ROWS)
-    np.testing.assert_allclose(g[:n_rows], loads.rows.ravel(), atol=1e-12)
+    n_rows = GRID.n_nodes * len(NODE_CONSTRAINTS)
+    np.testing.assert_allclose(g[:n_rows], loads.constraints.ravel(), atol=1e-12)
     np.testing.assert_allclose(g[n_rows : n_rows + q.size], q.ravel(), atol=1e-12)
     hands = g[n_rows + q.size : n_rows + q.size + 4].reshape(2, 2) * HAND_SCALE
     np.testing.assert_allclose(hands, loads.centres[[0, -1], -1], atol=1e-12)
@@ -104,15 +108,15 @@ def test_bounds_have_the_order_of_the_row_names() -> None:
     angle = np.arange(6.0)
     posture = np.stack([angle - 0.1, angle, angle + 0.1])
     bounds = LiftBounds(-angle - 1, angle + 1, posture - 1, posture + 1, np.ones((2, 2)), MASS)
-    lower, upper = bounds.rows(GRID)
-    assert len(lower) == len(upper) == len(GRID.row_names)
-    at = GRID.row_names.index('posture (4.8) of hip_flexion at 50 % of the lift')
+    lower, upper = bounds.constraints(GRID)
+    assert len(lower) == len(upper) == len(GRID.constraint_names)
+    at = GRID.constraint_names.index('posture (4.8) of hip_flexion at 50 % of the lift')
     assert (lower[at], upper[at]) == (2.0, 4.0)
-    at = GRID.row_names.index('hand position (4.6) up at the end [cm]')
+    at = GRID.constraint_names.index('hand position (4.6) up at the end [cm]')
     assert lower[at] == upper[at] == 1.0 / HAND_SCALE
-    at = GRID.row_names.index('joint torque limit (4.2) of arm_flex at 50 % of the lift')
+    at = GRID.constraint_names.index('joint torque limit (4.2) of arm_flex at 50 % of the lift')
     assert (lower[at], upper[at]) == (0.0, 1.0)
-    at = GRID.row_names.index('joint angle limit (4.1) of ankle_angle at 100 % of the lift')
+    at = GRID.constraint_names.index('joint angle limit (4.1) of ankle_angle at 100 % of the lift')
     assert (lower[at], upper[at]) == (-6.0, 6.0)
     lower, upper = bounds.variables(GRID)
     assert len(lower) == len(upper) == GRID.n_variables
@@ -123,10 +127,10 @@ def test_bounds_have_the_order_of_the_row_names() -> None:
 def test_margin_tightens_node_rows() -> None:
     angle = np.ones(6)
     posture = np.zeros((3, 6))
-    margin = np.zeros((2, GRID.n_nodes, len(NODE_ROWS) + 6))
+    margin = np.zeros((2, GRID.n_nodes, len(NODE_CONSTRAINTS) + 6))
     margin[0, 2, 1], margin[1, 2, 1], margin[1, 0, -1] = 0.1, 0.2, 0.3
     bounds = LiftBounds(-angle, angle, posture - 1, posture + 1, np.ones((2, 2)), MASS, margin)
-    lower, upper = bounds.rows(GRID)
-    row = 2 * len(NODE_ROWS) + 1
+    lower, upper = bounds.constraints(GRID)
+    row = 2 * len(NODE_CONSTRAINTS) + 1
     assert (lower[row], upper[row]) == (0.1, 0.8)
-    assert upper[GRID.n_nodes * len(NODE_ROWS) + 5] == pytest.approx(0.7)
+    assert upper[GRID.n_nodes * len(NODE_CONSTRAINTS) + 5] == pytest.approx(0.7)

@@ -5,27 +5,29 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from lift_predictor.core.sagittal import optimiser as module
-from lift_predictor.core.sagittal.grid import Grid
-from lift_predictor.core.sagittal.optimiser import LiftOptimiser
-from lift_predictor.core.sagittal.person import Person
-from lift_predictor.core.sagittal.starts import make_starts
-from lift_predictor.core.sagittal.task import Box, LiftTask2D, build_task
+from lift_predictor.core.models.sagittal.grid import SagittalGrid
+from lift_predictor.core.models.sagittal.lift_model import COLD, SagittalModel
+from lift_predictor.core.models.sagittal.person import Person
+from lift_predictor.core.models.sagittal.starts import make_starts
+from lift_predictor.core.models.sagittal.task import SagittalTask, build_task
+from lift_predictor.core.problem.run import Start
+from lift_predictor.core.problem.task import Box
+from lift_predictor.core.problem.task_solver import TaskSolver
 from lift_predictor.core.solvers.compiled import build_programme
 from lift_predictor.core.solvers.ipopt import LiftSolver
 from lift_predictor.core.solvers.solution import InteriorPointOptions, Status
-from lift_predictor.core.solvers.solver_run import Start
 
-GRID = Grid(7, 25)
+GRID = SagittalGrid(7, 25)
 
 
 @pytest.fixture(scope='module')
-def optimiser() -> LiftOptimiser:
-    return LiftOptimiser(GRID)
+def solver() -> TaskSolver[SagittalTask]:
+    return TaskSolver(SagittalModel())
 
 
 @pytest.fixture(scope='module')
@@ -34,16 +36,16 @@ def referee() -> LiftSolver:
 
 
 @pytest.fixture(scope='module')
-def task(make_lift, person: Person) -> Callable[[float], LiftTask2D]:
+def task(make_lift, person: Person) -> Callable[[float], SagittalTask]:
     return lambda mass: build_task(person, make_lift(mass), Box(mass, 0.238))
 
 
 @pytest.mark.parametrize('mass', [7.0, 12.0])
-def test_same_minimum_and_binding_limits_as_ipopt(optimiser, referee, task, mass) -> None:
+def test_same_minimum_and_binding_limits_as_ipopt(solver, referee, task, mass) -> None:
     lift = task(mass)
     vector = lift.parameters.pack()
     for start in make_starts(lift, GRID.spline):
-        own = optimiser.solve(vector, lift.bounds, start)
+        own = solver.run(lift, start)
         other = referee.solve(vector, lift.bounds, start)
         assert own.converged and other.converged
         assert own.objective == pytest.approx(other.objective, rel=1e-6)
@@ -55,45 +57,46 @@ def test_same_minimum_and_binding_limits_as_ipopt(optimiser, referee, task, mass
 
 
 def test_near_start_that_fails_is_solved_with_a_large_barrier(
-    monkeypatch: pytest.MonkeyPatch, optimiser, task
+    monkeypatch: pytest.MonkeyPatch, solver, task
 ) -> None:
     lift = task(7.0)
-    vector, start = lift.parameters.pack(), make_starts(lift, GRID.spline)[0]
-    good = optimiser.solve(vector, lift.bounds, start)
-    monkeypatch.setattr(module, 'NEAR_OPTIONS', InteriorPointOptions(max_iterations=2))
-    run = optimiser.solve(vector, lift.bounds, Start('near', start.control, near=True))
+    start = make_starts(lift, GRID.spline)[0]
+    good = solver.run(lift, start)
+    method = replace(solver.model.method, near=InteriorPointOptions(max_iterations=2))
+    monkeypatch.setattr(solver.model, 'method', method)
+    run = solver.run(lift, Start('near', start.control, near=True))
     assert run.converged
     assert run.objective == pytest.approx(good.objective, rel=1e-9)
-    assert run.iterations == good.iterations + 2
+    assert run.solution.iterations == good.solution.iterations + 2
 
 
-def test_near_start_stays_at_its_minimum(optimiser, task) -> None:
+def test_near_start_stays_at_its_minimum(solver, task) -> None:
     lift = task(12.0)
-    vector = lift.parameters.pack()
-    first = optimiser.solve(vector, lift.bounds, make_starts(lift, GRID.spline)[1])
-    again = optimiser.solve(vector, lift.bounds, first.as_start())
+    first = solver.run(lift, make_starts(lift, GRID.spline)[1])
+    again = solver.run(lift, first.as_start())
     assert again.converged
     assert again.objective == pytest.approx(first.objective, rel=1e-7)
 
 
 def test_ipopt_is_tried_and_named_where_no_start_gives_an_answer(
-    monkeypatch: pytest.MonkeyPatch, optimiser, task
+    monkeypatch: pytest.MonkeyPatch, solver, task
 ) -> None:
     lift = task(7.0)
-    monkeypatch.setattr(module, 'LIFT_OPTIONS', InteriorPointOptions(max_iterations=2))
+    method = replace(solver.model.method, cold=replace(COLD, max_iterations=2))
+    monkeypatch.setattr(solver.model, 'method', method)
     starts = make_starts(lift, GRID.spline)[:2]
-    runs = optimiser.solve_all(lift.parameters.pack(), lift.bounds, starts)
+    runs = solver.runs(lift, starts)
     assert runs[0].converged
     assert runs[0].start.endswith(', IPOPT')
     assert [run.status for run in runs[2:]] == [Status.ITERATION_LIMIT] * 2
 
 
 def test_infeasible_lift_is_not_given_to_ipopt(
-    monkeypatch: pytest.MonkeyPatch, optimiser, task
+    monkeypatch: pytest.MonkeyPatch, solver, task
 ) -> None:
     lift = task(30.0)
     starts = make_starts(lift, GRID.spline)
-    runs = optimiser.solve_all(lift.parameters.pack(), lift.bounds, starts)
+    runs = solver.runs(lift, starts)
     assert len(runs) == len(starts)
     assert {run.status for run in runs} == {Status.INFEASIBLE}
     assert 'joint torque limit' in runs[0].violated

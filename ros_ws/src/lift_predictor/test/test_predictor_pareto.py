@@ -12,7 +12,6 @@ import pytest
 
 from human_model.report import SolveReport, SolveStatus
 from lift_predictor.core.exceptions import TaskError
-from lift_predictor.core.maximum_weight import Weighting, maximum_weight_task, solve_maximum_weight
 from lift_predictor.core.pareto import (
     N_CASES,
     ParetoCurve,
@@ -22,21 +21,22 @@ from lift_predictor.core.pareto import (
     total_error,
     weightings,
 )
-from lift_predictor.core.sagittal.evaluation import total_effort
-from lift_predictor.core.sagittal.starts import make_starts
-from lift_predictor.core.sagittal.task import Box
+from lift_predictor.core.problem.maximum_weight import Weighting, maximum_weight
+from lift_predictor.core.problem.task import Box
 
 BOX = Box(7.0, 0.238)
 
 
 @pytest.fixture(scope='module')
-def solved(predictor, make_lift):
+def solved(subject, predictor, make_lift):
     """Return the curve, the order of the progress, task and starts."""
-    task = maximum_weight_task(predictor, make_lift(7.0), BOX)
-    starts = make_starts(task, predictor.programme.grid.spline)
-    told = []
-    curve = pareto_curve(predictor, task, starts, lambda case, result: told.append((case, result)))
-    return curve, told, task, starts
+    task = predictor.sagittal.model.maximum_weight_task(subject, make_lift(7.0), BOX)
+    starts = predictor.sagittal.model.starts(task)
+    called = []
+    curve = pareto_curve(
+        predictor.sagittal, task, starts, lambda case, result: called.append((case, result))
+    )
+    return curve, called, task, starts
 
 
 def test_weightings_are_the_cases_of_the_dissertation() -> None:
@@ -48,23 +48,21 @@ def test_weightings_are_the_cases_of_the_dissertation() -> None:
 
 
 def test_every_case_is_solved_and_verified(solved) -> None:
-    curve, told, _, _ = solved
-    assert [case for case, _ in told] == list(range(N_CASES))
+    curve, called, _, _ = solved
+    assert [case for case, _ in called] == list(range(N_CASES))
     assert all(result.report.ok for result in curve.results)
     assert all(result.prediction.verification.passed for result in curve.results)
 
 
 def test_no_case_is_better_than_another_in_both_criteria(solved, predictor) -> None:
-    """Of the programme's optima; the margins between the nodes that follow differ a little."""
+    """Of the optima at the nodes; the margins between the nodes that follow differ a little."""
     curve, _, task, starts = solved
     scale = curve.results[0].normalisation
-    programme = predictor.programme
+    model = predictor.sagittal.model
     effort, weight = np.empty(N_CASES), np.empty(N_CASES)
     for case, result in enumerate(curve.results):
-        run = result.prediction.optima[-len(starts) if case == 0 else -1]
-        parameters = replace(task.parameters, box_mass=run.box_mass)
-        report = programme.report
-        effort[case] = total_effort(report, programme.grid, run.control, parameters)
+        run = result.prediction.runs[-len(starts) if case == 0 else -1]
+        effort[case] = model.effort(task, run)
         weight[case] = run.box_mass * task.parameters.gravity
     assert np.all(np.diff(effort) <= 1e-6)
     assert np.all(np.diff(weight) <= 1e-4)
@@ -78,7 +76,7 @@ def test_no_case_is_better_than_another_in_both_criteria(solved, predictor) -> N
 def test_warm_starts_lose_nothing(solved, predictor) -> None:
     curve, _, task, starts = solved
     for case in (3, 12):
-        cold = solve_maximum_weight(predictor, task, starts, weightings()[case])
+        cold = maximum_weight(predictor.sagittal, task, starts, weightings()[case])
         warm = curve.results[case]
         assert warm.report.objective <= cold.report.objective + 1e-4 * abs(cold.report.objective)
 

@@ -11,7 +11,7 @@ import pytest
 
 from human_model.subject import Subject
 from lift_predictor.core.exceptions import PercentileError
-from lift_predictor.core.maximum_weight import predict_maximum_weight
+from lift_predictor.core.models.sagittal.person import Person
 from lift_predictor.core.percentile import (
     WEIGHT_TOLERANCE,
     StrengthSearch,
@@ -19,8 +19,7 @@ from lift_predictor.core.percentile import (
     percentile_by_root,
 )
 from lift_predictor.core.predictor import LiftPredictor
-from lift_predictor.core.sagittal.person import Person
-from lift_predictor.core.sagittal.task import Box
+from lift_predictor.core.problem.task import Box
 
 DEPTH = 0.238
 Z = 0.6
@@ -30,16 +29,15 @@ Z = 0.6
 def known(subject: Subject, make_lift):
     """Return a lift and the largest box that a man of strength_z = 0.6 lifts so."""
     strong = LiftPredictor()
-    strong.configure(replace(subject, strength_z=Z))
     lift = make_lift(7.0)
-    result = predict_maximum_weight(strong, lift, Box(7.0, DEPTH))
+    result = strong.maximum_weight(replace(subject, strength_z=Z), lift, Box(7.0, DEPTH))
     assert result.report.ok
     return lift, Box(result.mass, DEPTH)
 
 
 @pytest.fixture(scope='module')
-def by_root(predictor: LiftPredictor, known):
-    return percentile_by_root(predictor, *known)
+def by_root(subject: Subject, predictor: LiftPredictor, known):
+    return percentile_by_root(predictor, subject, *known)
 
 
 def test_known_strength_is_found_again(by_root, known) -> None:
@@ -52,14 +50,13 @@ def test_known_strength_is_found_again(by_root, known) -> None:
 
 def test_a_prediction_with_the_found_strength_is_the_same(by_root, subject, known) -> None:
     again = LiftPredictor()
-    again.configure(replace(subject, strength_z=by_root.z_score))
-    result = predict_maximum_weight(again, *known)
+    result = again.maximum_weight(replace(subject, strength_z=by_root.z_score), *known)
     assert result.weight == pytest.approx(by_root.predicted, rel=1e-6)
 
 
-def test_enumeration_gives_the_same_to_its_step(predictor, known, by_root) -> None:
+def test_enumeration_gives_the_same_to_its_step(subject, predictor, known, by_root) -> None:
     step = 0.5
-    found = percentile_by_enumeration(predictor, *known, step=step)
+    found = percentile_by_enumeration(predictor, subject, *known, step=step)
     assert found.z_score == pytest.approx(round(by_root.z_score / step) * step)
     assert len(found.tried) > len(by_root.tried) / 2
     z, weight = np.array(found.tried).T
@@ -70,18 +67,19 @@ def test_enumeration_gives_the_same_to_its_step(predictor, known, by_root) -> No
 
 
 def test_the_starting_strength_does_not_matter(subject, known, by_root) -> None:
-    weak = LiftPredictor()
-    weak.configure(replace(subject, strength_z=-1.0))
-    assert percentile_by_root(weak, *known).z_score == pytest.approx(by_root.z_score, abs=0.02)
+    weak = replace(subject, strength_z=-1.0)
+    assert percentile_by_root(LiftPredictor(), weak, *known).z_score == pytest.approx(
+        by_root.z_score, abs=0.02
+    )
 
 
-def test_impossible_weights_are_refused(predictor, make_lift) -> None:
+def test_impossible_weights_are_refused(subject, predictor, make_lift) -> None:
     with pytest.raises(PercentileError, match=r'60 kg .* no plausible strength'):
-        percentile_by_root(predictor, make_lift(7.0), Box(60.0, DEPTH))
+        percentile_by_root(predictor, subject, make_lift(7.0), Box(60.0, DEPTH))
 
 
 def test_plausible_range_leaves_every_joint_its_strength(predictor, known, subject) -> None:
-    search = StrengthSearch(predictor, *known)
+    search = StrengthSearch(predictor, subject, *known)
     low, high = search.range
     assert low < 0.0 < high
     for z in (low, high):

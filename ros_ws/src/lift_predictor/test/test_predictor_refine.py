@@ -12,14 +12,19 @@ from dataclasses import replace
 import pytest
 
 from human_model.subject import Subject
-from lift_predictor.core.planning.build import Plan, build_plan
+from lift_predictor.core.models.sagittal.grid import SagittalGrid
+from lift_predictor.core.models.sagittal.lift_model import SagittalModel
+from lift_predictor.core.models.sagittal.person import Person
+from lift_predictor.core.models.sagittal.plan import build_plan
+from lift_predictor.core.models.sagittal.task import SagittalTask
+from lift_predictor.core.models.sagittal.verify import verify
+from lift_predictor.core.options import PredictorOptions
 from lift_predictor.core.planning.plan_task import PlanTask
 from lift_predictor.core.predictor import LiftPredictor
-from lift_predictor.core.sagittal.grid import Grid
-from lift_predictor.core.sagittal.person import Person
-from lift_predictor.core.sagittal.refine import Refiner
-from lift_predictor.core.sagittal.verify import verify
-from lift_predictor.core.solvers.solver_run import best_objective
+from lift_predictor.core.problem.model import Plan
+from lift_predictor.core.problem.refinement import Refiner
+from lift_predictor.core.problem.run import best_objective
+from lift_predictor.core.problem.task_solver import TaskSolver
 
 BETWEEN_NODES = {
     'margins have no room at the collision circles': (
@@ -59,8 +64,7 @@ def own_predictor() -> LiftPredictor:
     return LiftPredictor()
 
 
-def plan_of(predictor: LiftPredictor, subject: Subject, task: PlanTask) -> Plan:
-    predictor.configure(subject)
+def plan_of(subject: Subject, task: PlanTask) -> Plan[SagittalTask]:
     return build_plan(Person.of(subject), task)
 
 
@@ -69,14 +73,14 @@ def test_a_lift_that_can_be_done_is_found_and_holds_between_the_nodes(
     own_predictor, case: str
 ) -> None:
     subject, task = (BETWEEN_NODES | HARD_TO_FIND)[case]
-    plan = plan_of(own_predictor, subject, task)
-    starts = plan.starts(own_predictor.programme.grid.spline, 4)
-    predicted = own_predictor.solve_task(plan.task, starts)
+    plan = plan_of(subject, task)
+    solver = own_predictor.sagittal
+    predicted = solver.solve(plan.task, solver.model.plan_starts(plan, 4))
     assert predicted.report.ok, predicted.report.message
     assert predicted.box_mass == pytest.approx(task.box_mass)
-    best = predicted.optima[0]
+    best = predicted.runs[0]
     check = verify(
-        own_predictor.programme.report, Grid(7, 97), best.control,
+        solver.model.library, SagittalGrid(7, 97), best.control,
         replace(plan.task.parameters, box_mass=best.box_mass), plan.task.bounds,
     )  # fmt: skip
     assert check.n_points == 961
@@ -85,37 +89,41 @@ def test_a_lift_that_can_be_done_is_found_and_holds_between_the_nodes(
 
 @pytest.fixture(scope='module')
 def between_nodes(own_predictor):
-    plan = plan_of(own_predictor, *BETWEEN_NODES['margins have no room at the collision circles'])
-    vector = plan.task.parameters.pack()
-    starts = plan.starts(own_predictor.programme.grid.spline, 4)
-    return plan.task, vector, own_predictor.programme.solve_all(vector, plan.task.bounds, starts)
+    plan = plan_of(*BETWEEN_NODES['margins have no room at the collision circles'])
+    solver = own_predictor.sagittal
+    starts = solver.model.plan_starts(plan, 4)
+    return plan.task, solver.runs(plan.task, starts)
+
+
+def refiner(refinements: int) -> Refiner[SagittalTask]:
+    solver = TaskSolver(SagittalModel(PredictorOptions(refinements=refinements)))
+    return Refiner(solver, solver.finer)
 
 
 def test_more_nodes_do_what_margins_cannot(own_predictor, between_nodes) -> None:
-    task, vector, optima = between_nodes
-    refiner = Refiner(own_predictor.programme, refinements=0)
-    runs, check = refiner.refine(task, vector, optima)
+    task, runs_before = between_nodes
+    runs, check = refiner(0).refine(task, runs_before)
     assert check.passed
     assert '49 nodes' in runs[0].start
-    least = best_objective(optima)
+    least = best_objective(runs_before)
     assert least < runs[0].objective < 1.01 * least
 
 
 def test_what_cannot_hold_between_the_nodes_is_not_passed_off_as_solved(
     own_predictor, between_nodes
 ) -> None:
-    task, vector, optima = between_nodes
+    task, runs_before = between_nodes
     # The check is of a box that nobody can carry past the knees.
-    # The programme knows a small one.
+    # The problem that was solved has a small one.
     wide = replace(task, parameters=replace(task.parameters, box_radius=0.6))
-    runs, check = Refiner(own_predictor.programme, 1).refine(wide, vector, optima)
+    runs, check = refiner(1).refine(wide, runs_before)
     assert not check.passed
     assert check.violation['collision [m]'] > 0.01
-    assert len(runs) > len(optima)
+    assert len(runs) > len(runs_before)
 
 
 def test_no_run_is_begun_after_the_deadline(own_predictor, between_nodes) -> None:
-    task, vector, optima = between_nodes
-    runs, check = Refiner(own_predictor.programme, 6).refine(task, vector, optima, deadline=0.0)
+    task, runs_before = between_nodes
+    runs, check = refiner(6).refine(task, runs_before, deadline=0.0)
     assert not check.passed
-    assert len(runs) == len(optima)
+    assert len(runs) == len(runs_before)

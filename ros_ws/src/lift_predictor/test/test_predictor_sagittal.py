@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from human_model.frames import matrix_from_quaternion, quaternion_from_matrix
 from human_model.motion import BodyMotion
 from lift_predictor.core.exceptions import TaskError
-from lift_predictor.core.sagittal.parameters import JOINTS
-from lift_predictor.core.sagittal.plane import SagittalPlane, sagittal_motion
+from lift_predictor.core.models.sagittal.parameters import JOINTS
+from lift_predictor.core.models.sagittal.plane import SagittalPlane, sagittal_motion
 
 
 def turned(motion: BodyMotion, heading: float, forward: float, left: float) -> BodyMotion:

@@ -11,8 +11,8 @@ import pytest
 
 from lift_predictor.core.bspline import RestToRestSpline
 from lift_predictor.core.exceptions import TaskError
-from lift_predictor.core.sagittal import solved_lifts as module
-from lift_predictor.core.sagittal.solved_lifts import library_starts, solved_lifts
+from lift_predictor.core.models.sagittal import solved_lifts as module
+from lift_predictor.core.models.sagittal.solved_lifts import library_starts, solved_lifts
 
 
 def test_lifts_are_different_motions_of_a_person() -> None:

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from lift_predictor.core.bspline import RestToRestSpline
-from lift_predictor.core.sagittal.evaluation import evaluate
-from lift_predictor.core.sagittal.kinematics import chain_positions
-from lift_predictor.core.sagittal.lift_motion import mtp_torque
-from lift_predictor.core.sagittal.starts import make_starts, smooth_step
-from lift_predictor.core.sagittal.task import build_task
-from lift_predictor.core.sampling import sample_times
+from lift_predictor.core.models.sagittal.evaluation import evaluate
+from lift_predictor.core.models.sagittal.kinematics import chain_positions
+from lift_predictor.core.models.sagittal.lift_motion import mtp_torque
+from lift_predictor.core.models.sagittal.starts import make_starts, smooth_step
+from lift_predictor.core.models.sagittal.task import build_task
+from lift_predictor.core.problem.sampling import sample_times
 
 SPLINE = RestToRestSpline(7)
 DENSE = np.linspace(0.0, 1.0, 61)
@@ -79,7 +79,7 @@ def test_samples_cover_the_lift_at_100_per_second() -> None:
 
 def test_toes_carry_only_what_acts_before_them(task, predictor) -> None:
     """Hand computation: standing still, leaning until the ZMP is ahead of the ball of the foot."""
-    report, rest = predictor.programme.report, np.zeros((2, 6))
+    report, rest = predictor.sagittal.model.library, np.zeros((2, 6))
     q = np.zeros((2, 6))
     q[1, 5] = 0.22
     loads = evaluate(report, q, rest, rest, task.parameters)

@@ -11,26 +11,24 @@ import pytest
 
 from human_model.report import SolveStatus
 from lift_predictor.core.exceptions import SplineError, TaskError
+from lift_predictor.core.models.sagittal.evaluation import evaluate
+from lift_predictor.core.models.sagittal.parameters import JOINTS
+from lift_predictor.core.models.sagittal.verify import verify
 from lift_predictor.core.options import PredictorOptions
 from lift_predictor.core.planning.plan_task import PlanTask
 from lift_predictor.core.planning.planner import LiftPlanner
 from lift_predictor.core.predictor import LiftPredictor
-from lift_predictor.core.sagittal.evaluation import evaluate
-from lift_predictor.core.sagittal.parameters import JOINTS
-from lift_predictor.core.sagittal.verify import verify
 
 
 @pytest.fixture(scope='module')
-def still(subject) -> LiftPredictor:
-    predictor = LiftPredictor(PredictorOptions(static_ends='acceleration'))
-    predictor.configure(subject)
-    return predictor
+def still() -> LiftPredictor:
+    return LiftPredictor(PredictorOptions(static_ends='acceleration'))
 
 
 @pytest.fixture(scope='module')
-def predicted(still, outcome):
+def predicted(subject, still, outcome):
     result = outcome(7.0)
-    return still.predict(result.lift, result.box)
+    return still.predict(subject, result.lift, result.box)
 
 
 def test_ends_are_postures_held_still(still, predicted, person, outcome) -> None:
@@ -48,11 +46,13 @@ def test_ends_are_postures_held_still(still, predicted, person, outcome) -> None
     np.testing.assert_allclose(usual.velocity[[0, -1]], 0.0, atol=1e-9)
 
 
-def test_torques_at_the_ends_are_those_of_holding_the_box(still, predicted, outcome) -> None:
-    task = still._task(outcome(7.0).lift, outcome(7.0).box)
+def test_torques_at_the_ends_are_those_of_holding_the_box(
+    subject, still, predicted, outcome
+) -> None:
+    task = still.sagittal.model.recorded_task(subject, outcome(7.0).lift, outcome(7.0).box)
     columns = [predicted.lift.motion.coordinates.index(joint) for joint in JOINTS]
     q = predicted.lift.motion.position[[0, -1]][:, columns]
-    held = evaluate(still.programme.report, q, 0.0 * q, 0.0 * q, task.parameters)
+    held = evaluate(still.sagittal.model.library, q, 0.0 * q, 0.0 * q, task.parameters)
     np.testing.assert_allclose(predicted.torque[[0, -1], :6], held.torque, atol=1e-6)
 
 
@@ -60,17 +60,17 @@ def test_rest_costs_effort(predicted, outcome) -> None:
     assert predicted.report.objective > outcome(7.0).predicted.report.objective
 
 
-def test_the_check_finds_accelerations_at_the_ends(still, predicted, outcome) -> None:
+def test_the_check_finds_accelerations_at_the_ends(subject, still, predicted, outcome) -> None:
     result = outcome(7.0)
-    task = still._task(result.lift, result.box)
-    grid = still.programme.grid
+    task = still.sagittal.model.recorded_task(subject, result.lift, result.box)
+    grid = still.sagittal.model.grid
     assert predicted.verification.violation['static_ends [rad/s^2]'] < 1e-6
     # The same control points on a spline that rests in velocity only: the ends accelerate.
     other = replace(grid, n_control=grid.n_control - 2, rest='velocity')
-    control = predicted.optima[0].control
-    assert verify(still.programme.report, other, control, task.parameters, task.bounds).violation[
-        'static_ends [rad/s^2]'
-    ] == pytest.approx(0.0), 'not asked for there'
+    control = predicted.runs[0].control
+    assert verify(
+        still.sagittal.model.library, other, control, task.parameters, task.bounds
+    ).violation['static_ends [rad/s^2]'] == pytest.approx(0.0), 'not asked for there'
 
 
 def test_plans_rest_too(still, subject) -> None:

@@ -11,13 +11,16 @@ import numpy as np
 import pytest
 
 from lift_predictor.core.exceptions import CancelledError
+from lift_predictor.core.models.sagittal.grid import SagittalGrid
+from lift_predictor.core.models.sagittal.lift_model import COLD, SagittalModel
+from lift_predictor.core.models.sagittal.starts import make_starts
+from lift_predictor.core.models.sagittal.task import build_task
+from lift_predictor.core.options import PredictorOptions
 from lift_predictor.core.planning.plan_task import PlanTask
 from lift_predictor.core.planning.planner import LiftPlanner
 from lift_predictor.core.predictor import LiftPredictor
-from lift_predictor.core.sagittal.grid import Grid
-from lift_predictor.core.sagittal.optimiser import LIFT_OPTIONS, LiftOptimiser
-from lift_predictor.core.sagittal.starts import make_starts
-from lift_predictor.core.sagittal.task import Box, build_task
+from lift_predictor.core.problem.task import Box
+from lift_predictor.core.problem.task_solver import TaskSolver
 from lift_predictor.core.solvers import interior_point
 from lift_predictor.core.solvers.solution import InteriorPointOptions, Status
 from lift_predictor.core.solvers.solve import solve
@@ -44,23 +47,23 @@ def test_flag_tells_why_and_can_be_used_again() -> None:
 
 @pytest.mark.parametrize('method', [solve, interior_point.solve])
 def test_no_iteration_is_done_after_the_flag_was_set(task, method) -> None:
-    optimiser = LiftOptimiser(Grid(7, 25))
-    programme = optimiser.programme(task.parameters.pack(), task.bounds)
-    start = make_starts(task, optimiser.grid.spline)[0]
+    model = SagittalModel()
+    nlp = model.nlp(task)
+    start = make_starts(task, model.grid.spline)[0]
     x0 = np.append(start.control, 7.0)
     flag = StopFlag()
-    assert method(programme, x0, InteriorPointOptions(stop=flag)).ok
+    assert method(nlp, x0, InteriorPointOptions(stop=flag)).ok
     flag.set('enough')
     with pytest.raises(CancelledError, match='enough'):
-        method(programme, x0, InteriorPointOptions(stop=flag))
+        method(nlp, x0, InteriorPointOptions(stop=flag))
 
 
 def test_flag_changes_no_number(task) -> None:
-    optimiser = LiftOptimiser(Grid(7, 25))
-    programme = optimiser.programme(task.parameters.pack(), task.bounds)
-    x0 = np.append(make_starts(task, optimiser.grid.spline)[0].control, 7.0)
+    model = SagittalModel()
+    nlp = model.nlp(task)
+    x0 = np.append(make_starts(task, model.grid.spline)[0].control, 7.0)
     bare, watched = (
-        solve(programme, x0, InteriorPointOptions(barrier=LIFT_OPTIONS.barrier, stop=stop))
+        solve(nlp, x0, InteriorPointOptions(barrier=COLD.barrier, stop=stop))
         for stop in (None, StopFlag())
     )
     assert bare.iterations == watched.iterations
@@ -70,8 +73,8 @@ def test_flag_changes_no_number(task) -> None:
 def test_a_long_run_is_ended_between_its_iterations(task) -> None:
     stop = StopFlag()
     # So many nodes that one run takes a second.
-    optimiser = LiftOptimiser(Grid(7, 20001), 60.0, stop)
-    start = make_starts(task, optimiser.grid.spline)[0]
+    model = SagittalModel(PredictorOptions(time_limit=60.0), grid=SagittalGrid(7, 20001))
+    start = make_starts(task, model.grid.spline)[0]
     asked: list[float] = []
 
     def ask() -> None:
@@ -81,18 +84,17 @@ def test_a_long_run_is_ended_between_its_iterations(task) -> None:
     timer = threading.Timer(0.1, ask)
     timer.start()
     with pytest.raises(CancelledError, match='cancelled'):
-        optimiser.solve(task.parameters.pack(), task.bounds, start)
+        TaskSolver(model, stop).run(task, start)
     assert time.perf_counter() - asked[0] < PROMPT
     timer.join()
 
 
 def test_a_run_ends_at_the_deadline(task) -> None:
-    optimiser = LiftOptimiser(Grid(7, 25))
-    start = make_starts(task, optimiser.grid.spline)[0]
-    vector = task.parameters.pack()
-    run = optimiser.solve(vector, task.bounds, start, deadline=time.perf_counter() - 1.0)
+    model = SagittalModel()
+    start = make_starts(task, model.grid.spline)[0]
+    run = TaskSolver(model).run(task, start, deadline=time.perf_counter() - 1.0)
     assert run.status is Status.TIME_LIMIT
-    assert run.iterations == 0
+    assert run.solution.iterations == 0
     assert not run.converged
 
 

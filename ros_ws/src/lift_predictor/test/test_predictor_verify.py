@@ -9,20 +9,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from lift_predictor.core.dense_grid import DENSITY
-from lift_predictor.core.sagittal.task import build_task
-from lift_predictor.core.sagittal.verify import verify
+from lift_predictor.core.models.sagittal.task import build_task
+from lift_predictor.core.models.sagittal.verify import verify
+from lift_predictor.core.problem.verification import DENSITY
 
 
 @pytest.fixture(scope='module')
 def solved(outcome, predictor, person):
     result = outcome(7.0)
     task = build_task(person, result.lift, result.box)
-    control = result.predicted.optima[0].control
+    control = result.predicted.runs[0].control
 
     def check(control=control, parameters=task.parameters, bounds=task.bounds):
-        programme = predictor.programme
-        return verify(programme.report, programme.grid, control, parameters, bounds)
+        model = predictor.sagittal.model
+        return verify(model.library, model.grid, control, parameters, bounds)
 
     return check, control, task
 

@@ -11,19 +11,19 @@ import numpy as np
 import pytest
 
 from human_model.subject import Subject
+from lift_predictor.core.models.spatial.assembly import spatial_assembler, spatial_library
+from lift_predictor.core.models.spatial.frame import StanceFrame
+from lift_predictor.core.models.spatial.grid import SpatialGrid
+from lift_predictor.core.models.spatial.person import SpatialPerson
+from lift_predictor.core.models.spatial.postures import guess
+from lift_predictor.core.models.spatial.starts import through
+from lift_predictor.core.models.spatial.task import PlacedBox, place_task
 from lift_predictor.core.solvers import cache
 from lift_predictor.core.solvers.layout import Channel, Group
 from lift_predictor.core.solvers.library import load_library
 from lift_predictor.core.solvers.node_function import NodeFunction
 from lift_predictor.core.solvers.spline_nlp import make_assembler
 from lift_predictor.core.solvers.sweeps import SweptFunction
-from lift_predictor.core.spatial.frame import StanceFrame
-from lift_predictor.core.spatial.grid import SpatialGrid
-from lift_predictor.core.spatial.person import SpatialPerson
-from lift_predictor.core.spatial.postures import guess
-from lift_predictor.core.spatial.programme import spatial_assembler, spatial_library
-from lift_predictor.core.spatial.starts import through
-from lift_predictor.core.spatial.task import PlacedBox, place_task
 
 N_Z, POINTS = 4, 11
 
@@ -102,7 +102,8 @@ def lift_programme(subject: Subject):
     assembler = spatial_assembler(spatial_library(), grid)
     assembler.set_parameters(task.parameters.pack())
     ends = guess(task, 0), None, guess(task, 1)
-    return assembler, through(task, grid, ends, 'guess', 7.0).variables()
+    start = through(task, grid, ends, 'guess', 7.0)
+    return assembler, np.append(start.control.ravel(), (7.0, 1.3))
 
 
 def test_gradient_and_jacobian_of_the_lift_against_differences(lift_programme) -> None:

@@ -15,14 +15,12 @@ from human_model.motion import BodyMotion, Lift
 from human_model.report import SolveReport, SolveStatus
 from human_model.skeleton import ExternalForce
 from human_model.subject import Subject
-from lift_predictor.core.exceptions import TaskError
-from lift_predictor.core.options import PredictorOptions
+from lift_predictor.core.models.spatial.task import KEY_JOINTS, SpatialTask, without_ground_windows
+from lift_predictor.core.models.spatial.verify import TOLERANCE
+from lift_predictor.core.options import PredictorOptions, Windows
 from lift_predictor.core.predictor import LiftPredictor
-from lift_predictor.core.sagittal.task import Box
-from lift_predictor.core.spatial.predictor import SpatialOptions, SpatialPredictor
-from lift_predictor.core.spatial.starts import recorded_starts
-from lift_predictor.core.spatial.task import KEY_JOINTS, Windows, without_ground_windows
-from lift_predictor.core.spatial.verify import TOLERANCE
+from lift_predictor.core.problem.task import Box
+from lift_predictor.core.problem.task_solver import TaskSolver
 
 BAGS = Path(__file__).parents[4] / 'bags'
 MASS, DEPTH = 7.0, 0.238
@@ -55,21 +53,24 @@ def lift() -> Lift:
 
 
 @pytest.fixture(scope='module')
-def spatial(subject: Subject) -> SpatialPredictor:
-    predictor = SpatialPredictor()
-    predictor.configure(subject)
-    return predictor
+def predictor() -> LiftPredictor:
+    return LiftPredictor(PredictorOptions(dimension='3d'))
 
 
 @pytest.fixture(scope='module')
-def solved(spatial: SpatialPredictor, lift: Lift):
-    return spatial.predict_and_compare(lift, Box(MASS, DEPTH))
+def spatial(predictor: LiftPredictor) -> TaskSolver[SpatialTask]:
+    return predictor.spatial
+
+
+@pytest.fixture(scope='module')
+def solved(predictor: LiftPredictor, subject: Subject, lift: Lift):
+    return predictor.predict(subject, lift, Box(MASS, DEPTH))
 
 
 def test_solved_with_small_kkt_residuals_and_verified_between_the_nodes(solved) -> None:
-    predicted, comparison = solved
+    predicted, comparison = solved, solved.comparison
     assert predicted.report.ok, predicted.report.message
-    best = predicted.optima[0].solution
+    best = predicted.runs[0].solution
     assert best.primal < 1e-6
     assert best.dual < 1e-6
     assert best.complementarity < 1e-6
@@ -81,10 +82,10 @@ def test_solved_with_small_kkt_residuals_and_verified_between_the_nodes(solved) 
     assert comparison.predicted_effort < comparison.measured_effort
 
 
-def test_motion_and_forces_balance_on_the_skeleton(solved, spatial) -> None:
+def test_motion_and_forces_balance_on_the_skeleton(solved, spatial, subject) -> None:
     """Read alone, the motion with its forces on feet and hands has no residual at the pelvis."""
-    predicted, _ = solved
-    motion, skeleton = predicted.lift.motion, spatial.person.skeleton
+    predicted = solved
+    motion, skeleton = predicted.lift.motion, spatial.model.person(subject).skeleton
     assert motion.skeleton == '3d_40dof'
     np.testing.assert_allclose(np.diff(motion.time), 0.01, atol=1e-9)
     for i in range(0, len(motion), 16):
@@ -112,11 +113,11 @@ def test_motion_and_forces_balance_on_the_skeleton(solved, spatial) -> None:
     np.testing.assert_allclose(speeds[2:-2], motion.acceleration[2:-2], atol=2.0)
 
 
-def test_motion_meets_the_task(solved, lift, spatial) -> None:
+def test_motion_meets_the_task(solved, lift, spatial, subject) -> None:
     """Feet, hands, limits, windows, from the result alone."""
-    predicted, _ = solved
+    predicted = solved
     motion, recorded = predicted.lift.motion, lift.window
-    limits = spatial.person.skeleton.limits
+    limits = spatial.model.person(subject).skeleton.limits
     for j, name in enumerate(motion.coordinates):
         low, high = limits[j]
         assert motion.position[:, j].min() >= low - 1e-3, name
@@ -182,18 +183,20 @@ def mirrored(lift: Lift) -> Lift:
     ))  # fmt: skip
 
 
-def test_lift_to_the_right_is_the_mirror_image(spatial: SpatialPredictor, lift: Lift) -> None:
+def test_lift_to_the_right_is_the_mirror_image(
+    spatial: TaskSolver[SpatialTask], subject: Subject, lift: Lift
+) -> None:
     """Same objective and reflected motion; strength must be symmetric for that."""
     both = []
     for recorded in (lift, mirrored(lift)):
-        task = spatial.task(recorded, Box(MASS, DEPTH))
+        task = spatial.model.recorded_task(subject, recorded, Box(MASS, DEPTH))
         p = task.parameters
         # Published trunk rotation is 71.6 N m to the right, 71 N m to the left.
         rotation = [2, 5]
         lower, upper = p.strength_lower.copy(), p.strength_upper.copy()
         upper[rotation] = -lower[rotation]
         even = replace(task, parameters=replace(p, strength_lower=lower, strength_upper=upper))
-        both.append(spatial.solve_task(even, recorded_starts(even, spatial.grid)[:1]))
+        both.append(spatial.solve(even, spatial.model.starts(even)[:1]))
     left, right = both
     assert left.report.ok and right.report.ok
     assert right.report.objective == pytest.approx(left.report.objective, rel=1e-6)
@@ -203,7 +206,7 @@ def test_lift_to_the_right_is_the_mirror_image(spatial: SpatialPredictor, lift: 
 
 
 def test_turned_laboratory_gives_the_same_lift(
-    spatial: SpatialPredictor, lift: Lift, solved
+    predictor: LiftPredictor, subject: Subject, lift: Lift, solved
 ) -> None:
     angle = 0.7
     turn = np.array([[np.cos(angle), -np.sin(angle), 0.0], [np.sin(angle), np.cos(angle), 0.0],
@@ -217,44 +220,43 @@ def test_turned_laboratory_gives_the_same_lift(
         ground_force=motion.ground_force @ turn.T,
         frames=quaternion_from_matrix(turn @ matrix_from_quaternion(motion.frames)),
     )
-    other = spatial.predict(replace(lift, motion=moved), Box(MASS, DEPTH))
+    other = predictor.predict(subject, replace(lift, motion=moved), Box(MASS, DEPTH))
     assert other.report.ok
-    assert other.report.objective == pytest.approx(solved[0].report.objective, rel=1e-5)
-    there = solved[0].lift.motion.points @ turn.T + shift
+    assert other.report.objective == pytest.approx(solved.report.objective, rel=1e-5)
+    there = solved.lift.motion.points @ turn.T + shift
     np.testing.assert_allclose(other.lift.motion.points, there, atol=1e-3)
 
 
 def test_the_pipeline_takes_asymmetric_lifts_to_space(subject: Subject, lift: Lift) -> None:
     predictor = LiftPredictor()
-    predictor.configure(subject)
-    predicted, comparison = predictor.predict_and_compare(lift, Box(MASS, DEPTH))
+    predicted = predictor.predict(subject, lift, Box(MASS, DEPTH))
     assert predicted.report.ok, predicted.report.message
     assert predicted.lift.motion.skeleton == '3d_40dof'
-    assert comparison.joint_names == KEY_JOINTS
+    assert predicted.comparison.joint_names == KEY_JOINTS
     flat = LiftPredictor(PredictorOptions(dimension='2d'))
-    flat.configure(subject)
-    refused, _ = flat.predict_and_compare(lift, Box(MASS, DEPTH))
+    refused = flat.predict(subject, lift, Box(MASS, DEPTH))
     assert refused.report.status is SolveStatus.PREDICTOR_BAD_INPUT
     assert 'turns' in refused.report.message
 
 
-def test_free_duration_does_not_cost_more(spatial: SpatialPredictor, lift: Lift, solved) -> None:
-    options = SpatialOptions(windows=Windows(duration=(0.8, 1.25)))
-    free = SpatialPredictor(options)
-    free.person, free.subject = spatial.person, spatial.subject
-    task = free.task(lift, Box(MASS, DEPTH))
-    predicted = free.solve_task(task, recorded_starts(task, free.grid)[:1])
+def test_free_duration_does_not_cost_more(subject: Subject, lift: Lift, solved) -> None:
+    options = PredictorOptions(windows=Windows(duration=(0.8, 1.25)))
+    free = LiftPredictor(options).spatial
+    task = free.model.recorded_task(subject, lift, Box(MASS, DEPTH))
+    predicted = free.solve(task, free.model.starts(task)[:1])
     assert predicted.report.ok, predicted.report.message
     recorded = lift.end - lift.start
     assert 0.8 * recorded - 1e-6 <= predicted.duration <= 1.25 * recorded + 1e-6
     assert abs(predicted.duration - recorded) > 1e-3
-    assert predicted.report.objective < solved[0].report.objective
+    assert predicted.report.objective < solved.report.objective
     assert predicted.lift.motion.time[-1] - lift.start == pytest.approx(predicted.duration)
 
 
-def test_too_heavy_a_box_names_what_breaks(spatial: SpatialPredictor, lift: Lift) -> None:
+def test_too_heavy_a_box_names_what_breaks(
+    predictor: LiftPredictor, spatial: TaskSolver[SpatialTask], subject: Subject, lift: Lift
+) -> None:
     """The heaviest feasible lift comes with it; with a little more weight it is not feasible."""
-    predicted = spatial.predict(lift, Box(60.0, DEPTH))
+    predicted = predictor.predict(subject, lift, Box(60.0, DEPTH))
     assert predicted.report.status is SolveStatus.PREDICTOR_INFEASIBLE
     assert 'no feasible motion: joint torque limit' in predicted.report.message
     assert 'breaks first' in predicted.report.message
@@ -263,22 +265,22 @@ def test_too_heavy_a_box_names_what_breaks(spatial: SpatialPredictor, lift: Lift
     nearest = predicted.nearest.prediction
     assert nearest.report.ok
     assert MASS < nearest.box_mass < 60.0
-    heavier = without_ground_windows(spatial.task(lift, Box(nearest.box_mass + 2.0, DEPTH)))
-    start = replace(recorded_starts(heavier, spatial.grid)[0], control=nearest.control)
-    assert not spatial.solve_task(heavier, (start,)).report.ok
+    heavier = without_ground_windows(
+        spatial.model.recorded_task(subject, lift, Box(nearest.box_mass + 2.0, DEPTH))
+    )
+    start = replace(spatial.model.starts(heavier)[0], control=nearest.runs[0].control)
+    assert not spatial.solve(heavier, (start,)).report.ok
 
 
-def test_bad_input_is_named(spatial: SpatialPredictor, lift: Lift) -> None:
+def test_bad_input_is_named(predictor: LiftPredictor, subject: Subject, lift: Lift) -> None:
     motion = lift.motion
     walking = motion.points.copy()
     foot = [motion.point_names.index(f'{part}_r') for part in ('heel', 'toe', 'ankle')]
     walking[:, foot, 0] += np.linspace(0.0, 2.0, len(motion))[:, None]
     step = replace(lift, motion=replace(motion, points=walking))
-    report = spatial.predict(step, Box(MASS, DEPTH)).report
+    report = predictor.predict(subject, step, Box(MASS, DEPTH)).report
     assert report.status is SolveStatus.PREDICTOR_BAD_INPUT
     assert 'right foot moves' in report.message
     bad = SolveReport(SolveStatus.TRACKER_MARKERS_MISSING, 'marker T10 is missing')
-    report = spatial.predict(replace(lift, report=bad), Box(MASS, DEPTH)).report
+    report = predictor.predict(subject, replace(lift, report=bad), Box(MASS, DEPTH)).report
     assert 'marker T10' in report.message
-    with pytest.raises(TaskError, match='subject'):
-        SpatialPredictor().predict(lift, Box(MASS, DEPTH))

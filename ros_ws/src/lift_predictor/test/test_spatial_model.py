@@ -12,17 +12,17 @@ from hypothesis import strategies as st
 from human_model.constants import GRAVITY
 from human_model.skeleton import ExternalForce
 from human_model.subject import Subject
-from lift_predictor.core.spatial.coordinates import skeleton_motion
-from lift_predictor.core.spatial.evaluation import evaluate
-from lift_predictor.core.spatial.parameters import (
+from lift_predictor.core.models.spatial.assembly import spatial_library
+from lift_predictor.core.models.spatial.coordinates import skeleton_motion
+from lift_predictor.core.models.spatial.evaluation import evaluate
+from lift_predictor.core.models.spatial.parameters import (
     DEPENDENT,
     SIDES,
     SPLINED,
     STRONG,
     SpatialParameters,
 )
-from lift_predictor.core.spatial.person import SpatialPerson
-from lift_predictor.core.spatial.programme import spatial_library
+from lift_predictor.core.models.spatial.person import SpatialPerson
 
 WIDTH = 0.305
 MOST_LIST = 0.5
@@ -203,7 +203,7 @@ def test_ground_is_divided_so_that_both_feet_together_are_the_whole(who) -> None
     back, front = parameters.sole
     for k in range(2):
         c, s = np.cos(parameters.foot_turn[k]), np.sin(parameters.foot_turn[k])
-        along = back + loads.share[0] * (front - back)
+        along = back + loads.fraction[0] * (front - back)
         expected = parameters.ankle[k, :2] + along * np.array([c, s])
         np.testing.assert_allclose(loads.pressure[0, k], [*expected, 0.0], atol=1e-12)
     assert loads.ground_force[0, 0, 1] > 0.0 > loads.ground_force[0, 1, 1], 'forces lean inwards'

@@ -10,47 +10,60 @@ import numpy as np
 import pytest
 
 from lift_predictor.core.exceptions import CancelledError
+from lift_predictor.core.models.spatial.grid import SpatialGrid
+from lift_predictor.core.models.spatial.lift_model import SpatialModel
+from lift_predictor.core.models.spatial.parameters import N_SPLINED
+from lift_predictor.core.models.spatial.task import SpatialTask
+from lift_predictor.core.options import PredictorOptions
+from lift_predictor.core.problem.run import SolverRun, Start
+from lift_predictor.core.problem.task_solver import TaskSolver
 from lift_predictor.core.solvers.solution import Solution, Status
-from lift_predictor.core.spatial.grid import SpatialGrid
-from lift_predictor.core.spatial.multistart import runs_from
-from lift_predictor.core.spatial.parameters import N_SPLINED
-from lift_predictor.core.spatial.prediction import SpatialOptimum
-from lift_predictor.core.spatial.starts import SpatialStart
 
 GRID = SpatialGrid(7, 25)
 SHAPE = (GRID.spline.n_free, N_SPLINED)
-LATER = (float('inf'), float('inf'))
 
 
 class MadeUp:
     """Objectives by turns; where a run began is kept. Infinite: no solution."""
 
-    def __init__(self, *objectives: float) -> None:
-        self.objectives, self.begun = objectives, []
+    def __init__(self, *objectives: float, seconds: float = 0.0) -> None:
+        self.objectives, self.begun, self.seconds = objectives, [], seconds
 
-    def __call__(self, start: SpatialStart) -> SpatialOptimum:
+    def __call__(self, task: SpatialTask, start: Start, deadline: float) -> SolverRun:
         objective = self.objectives[len(self.begun)]
         self.begun.append(start)
+        time.sleep(self.seconds)
         status = Status.OPTIMAL if np.isfinite(objective) else Status.STUCK
-        x, none = start.variables(), np.zeros(0)
-        return SpatialOptimum(
-            start.name, Solution(status, x, objective, none, none, 1, 0.5, 0.0, 0.0, (), 0.0)
-        )
+        none, primal = np.zeros(0), 0.0 if np.isfinite(objective) else 0.5
+        solution = Solution(status, none, objective, none, none, 1, primal, 0.0, 0.0, (), 0.0)
+        return SolverRun(start.name, solution, start.control, start.box_mass, 1.3, '')
 
 
-def starts(count: int) -> list[SpatialStart]:
-    return [SpatialStart(f's{i}', np.full(SHAPE, float(i)), 7.0, 1.3) for i in range(count)]
+@pytest.fixture
+def runs_from(placed, monkeypatch: pytest.MonkeyPatch):
+    """Return a function that makes the runs of a made-up solver."""
+    solver = TaskSolver(SpatialModel(PredictorOptions(dimension='3d')))
+
+    def runs(run: MadeUp, begun: list[Start], *rest, **named) -> tuple[SolverRun, ...]:
+        monkeypatch.setattr(solver, 'run', run)
+        return solver.runs(placed(solver.model.grid, 7.0), begun, *rest, **named)
+
+    return runs
 
 
-def test_best_comes_first_and_failures_last() -> None:
+def starts(count: int) -> list[Start]:
+    return [Start(f's{i}', np.full(SHAPE, float(i)), 7.0, 1.3) for i in range(count)]
+
+
+def test_best_comes_first_and_failures_last(runs_from) -> None:
     run = MadeUp(2.0, float('inf'), 1.0)
-    assert [one.start for one in runs_from(run, starts(3), 0, GRID, LATER)] == ['s2', 's0', 's1']
+    assert [one.start for one in runs_from(run, starts(3))] == ['s2', 's0', 's1']
 
 
-def test_hops_begin_at_the_best_so_far() -> None:
+def test_hops_begin_at_the_best_so_far(runs_from) -> None:
     run = MadeUp(2.0, 1.0, 3.0, 0.5, 0.7)
-    runs = runs_from(run, starts(2), 3, GRID, LATER)
-    assert [one.start for one in runs] == ['hop 2', 'hop 3', 's1', 's0', 'hop 1']
+    runs = runs_from(run, starts(2), basin_hops=3)
+    assert [one.start for one in runs] == ['basin hop 2', 'basin hop 3', 's1', 's0', 'basin hop 1']
     shifts = [
         run.begun[k].control - run.begun[origin].control for k, origin in ((2, 1), (3, 1), (4, 3))
     ]
@@ -61,33 +74,36 @@ def test_hops_begin_at_the_best_so_far() -> None:
     assert np.ptp(shifts[1], axis=0).min() > 1e-3
     assert np.ptp(shifts[2], axis=0).max() < 1e-12
     again = MadeUp(2.0, 1.0, 3.0, 0.5, 0.7)
-    runs_from(again, starts(2), 3, GRID, LATER)
+    runs_from(again, starts(2), basin_hops=3)
     for one, other in zip(run.begun, again.begun, strict=True):
         np.testing.assert_array_equal(one.control, other.control)
 
 
-def test_no_hops_without_a_solution() -> None:
+def test_no_hops_without_a_solution(runs_from) -> None:
     run = MadeUp(float('inf'), float('inf'))
-    assert len(runs_from(run, starts(2), 3, GRID, LATER)) == 2
+    assert len(runs_from(run, starts(2), basin_hops=3)) == 2
 
 
-@pytest.mark.parametrize(('seconds', 'count'), [((-1.0, -2.0), 1), ((60.0, -1.0), 2)])
-def test_time_limits(seconds: tuple[float, float], count: int) -> None:
-    now = time.perf_counter()
-    run = MadeUp(1.0, 2.0, 3.0)
-    assert len(runs_from(run, starts(2), 1, GRID, (now + seconds[0], now + seconds[1]))) == count
+def test_no_start_begins_after_the_deadline(runs_from) -> None:
+    assert len(runs_from(MadeUp(1.0, 2.0), starts(2), time.perf_counter() - 1.0)) == 1
 
 
-def test_progress_is_told_and_may_end_the_work() -> None:
-    told = []
+def test_no_hop_begins_after_half_of_the_time(runs_from) -> None:
+    """The rest is for margins."""
+    run = MadeUp(1.0, 2.0, 3.0, seconds=0.3)
+    assert len(runs_from(run, starts(2), time.perf_counter() + 1.0, basin_hops=1)) == 2
+
+
+def test_progress_is_called_and_may_end_the_work(runs_from) -> None:
+    called = []
 
     def listen(*facts: float) -> None:
-        told.append(facts)
-        if len(told) == 3:
+        called.append(facts)
+        if len(called) == 3:
             raise CancelledError('enough')
 
     run = MadeUp(float('inf'), 2.0, 1.0, 0.5)
     with pytest.raises(CancelledError):
-        runs_from(run, starts(2), 2, GRID, LATER, listen)
-    assert told[1:] == [(2, 4, 2.0), (3, 4, 1.0)]
-    assert np.isnan(told[0][2])
+        runs_from(run, starts(2), progress=listen, basin_hops=2)
+    assert called[1:] == [(2, 4, 2.0), (3, 4, 1.0)]
+    assert np.isnan(called[0][2])

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 
 from lift_predictor.core.exceptions import UnreachableError
-from lift_predictor.core.spatial.evaluation import evaluate
-from lift_predictor.core.spatial.grid import LIMITED, SpatialGrid
-from lift_predictor.core.spatial.parameters import N_SPLINED
-from lift_predictor.core.spatial.postures import SAME, PostureFinder, guess
-from lift_predictor.core.spatial.programme import spatial_library
-from lift_predictor.core.spatial.starts import SpatialStart
-from lift_predictor.core.spatial.task import SpatialTask
+from lift_predictor.core.models.spatial.assembly import spatial_library
+from lift_predictor.core.models.spatial.evaluation import evaluate
+from lift_predictor.core.models.spatial.grid import LIMITED, SpatialGrid
+from lift_predictor.core.models.spatial.parameters import N_SPLINED
+from lift_predictor.core.models.spatial.postures import SAME, PostureFinder, guess
+from lift_predictor.core.models.spatial.starts import Start
+from lift_predictor.core.models.spatial.task import SpatialTask
 
 GRID, MASS = SpatialGrid(7, 25), 7.0
 
@@ -42,7 +42,7 @@ def test_box_is_held_in_balance_within_all_limits_with_less_effort_than_beside(
     np.testing.assert_allclose(loads.hand[0].ravel(), task.bounds.hand[end], atol=1e-6)
     assert np.all(loads.torque > loads.lower - 1e-3)
     assert np.all(loads.torque < loads.upper + 1e-3)
-    assert 0.0 <= loads.share[0] <= 1.0
+    assert 0.0 <= loads.fraction[0] <= 1.0
     weight = task.parameters.gravity * (task.parameters.body_mass + MASS)
     assert loads.ground_force[0, :, 2].sum() == pytest.approx(weight, rel=1e-9)
     low, high = task.person.limits(LIMITED)
@@ -72,7 +72,7 @@ def test_starts_rest_in_the_postures_and_differ(finder: PostureFinder, task: Spa
         assert start.duration == pytest.approx(1.3)
 
 
-def ends(start: SpatialStart) -> np.ndarray:
+def ends(start: Start) -> np.ndarray:
     basis = GRID.spline.basis(np.array([0.0, 1.0]), 0)
     return np.asarray(basis @ start.control)
 

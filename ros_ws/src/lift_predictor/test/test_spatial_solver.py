@@ -9,34 +9,34 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from lift_predictor.core.models.spatial.assembly import (
+    spatial_assembler,
+    spatial_library,
+    spatial_nlp,
+)
+from lift_predictor.core.models.spatial.grid import SpatialGrid
+from lift_predictor.core.models.spatial.lift_model import SOLVER_OPTIONS
+from lift_predictor.core.models.spatial.postures import PostureFinder
 from lift_predictor.core.solvers import cache, interior_point
 from lift_predictor.core.solvers.solution import InteriorPointOptions, Status
 from lift_predictor.core.solvers.solve import solve
 from lift_predictor.core.solvers.spline_nlp import SplineNlp
-from lift_predictor.core.spatial.grid import SpatialGrid
-from lift_predictor.core.spatial.postures import PostureFinder
-from lift_predictor.core.spatial.predictor import SpatialOptions
-from lift_predictor.core.spatial.programme import (
-    spatial_assembler,
-    spatial_library,
-    spatial_programme,
-)
 
 pytestmark = pytest.mark.skipif(
     cache.find_compiler() is None, reason='no C compiler on this machine'
 )
 GRID = SpatialGrid(5, 9)
-OPTIONS = SpatialOptions().interior_point()
+OPTIONS = SOLVER_OPTIONS
 
 
 @pytest.fixture(scope='module')
 def lift(placed) -> tuple[SplineNlp, np.ndarray]:
     task, library = placed(GRID, 7.0), spatial_library()
     start = PostureFinder(library).starts(task, GRID, guesses=1)[0]
-    programme = spatial_programme(
-        spatial_assembler(library, GRID), GRID, task.parameters, task.bounds
+    programme = spatial_nlp(
+        spatial_assembler(library, GRID), GRID, task.parameters.pack(), task.bounds
     )
-    return programme, start.variables()
+    return programme, np.append(start.control.ravel(), (start.box_mass, task.duration))
 
 
 def test_same_iterates_as_the_reference(lift) -> None:
@@ -72,7 +72,7 @@ def test_same_optimum_as_the_reference_also_from_a_warm_start(lift) -> None:
 def test_small_warm_barrier_follows_a_changed_task_to_the_same_optimum(placed, lift) -> None:
     programme, x0 = lift
     heavier = placed(GRID, 7.05)
-    other = spatial_programme(programme.assembler, GRID, heavier.parameters, heavier.bounds)
+    other = spatial_nlp(programme.assembler, GRID, heavier.parameters.pack(), heavier.bounds)
     first = solve(programme, x0, OPTIONS)
     changed = np.clip(first.x, other.lower, other.upper)
     warm = solve(other, changed, OPTIONS, first)

@@ -10,24 +10,31 @@ import numpy as np
 import pytest
 
 from human_model.subject import Subject
-from lift_predictor.core.sagittal.evaluation import evaluate as evaluate_2d
-from lift_predictor.core.sagittal.grid import LiftBounds
-from lift_predictor.core.sagittal.parameters import JOINTS
-from lift_predictor.core.sagittal.person import Person
-from lift_predictor.core.solvers.solution import InteriorPointOptions
-from lift_predictor.core.solvers.solve import solve
-from lift_predictor.core.solvers.solver_run import Start
-from lift_predictor.core.spatial.evaluation import evaluate
-from lift_predictor.core.spatial.frame import StanceFrame
-from lift_predictor.core.spatial.grid import LIMITED, WAY_ROWS, SpatialGrid, row_slice
-from lift_predictor.core.spatial.parameters import SPLINED, STRONG, SpatialParameters
-from lift_predictor.core.spatial.person import SpatialPerson
-from lift_predictor.core.spatial.programme import (
+from lift_predictor.core.models.sagittal.evaluation import evaluate as evaluate_2d
+from lift_predictor.core.models.sagittal.grid import LiftBounds
+from lift_predictor.core.models.sagittal.parameters import JOINTS
+from lift_predictor.core.models.sagittal.person import Person
+from lift_predictor.core.models.sagittal.plane import SagittalPlane
+from lift_predictor.core.models.sagittal.task import SagittalTask
+from lift_predictor.core.models.spatial.assembly import (
     spatial_assembler,
     spatial_library,
-    spatial_programme,
+    spatial_nlp,
 )
-from lift_predictor.core.spatial.task import PlacedBox, place_task
+from lift_predictor.core.models.spatial.evaluation import evaluate
+from lift_predictor.core.models.spatial.frame import StanceFrame
+from lift_predictor.core.models.spatial.grid import (
+    LIMITED,
+    WAY_CONSTRAINTS,
+    SpatialGrid,
+    constraint_slice,
+)
+from lift_predictor.core.models.spatial.parameters import SPLINED, STRONG, SpatialParameters
+from lift_predictor.core.models.spatial.person import SpatialPerson
+from lift_predictor.core.models.spatial.task import PlacedBox, place_task
+from lift_predictor.core.problem.run import Start
+from lift_predictor.core.solvers.solution import InteriorPointOptions
+from lift_predictor.core.solvers.solve import solve
 
 PLANAR = {
     'lumbar_extension': ('lumbar_extension',),
@@ -83,7 +90,7 @@ def test_model_agrees_with_the_sagittal_one(who, person, parameters, planar, pre
     three = evaluate(
         spatial_library(), *(in_space(part) for part in (q, dq, ddq)), 7.0, spatial_parameters
     )
-    two = evaluate_2d(predictor.programme.report, q, dq, ddq, parameters)
+    two = evaluate_2d(predictor.sagittal.model.library, q, dq, ddq, parameters)
     for column, joint in enumerate(JOINTS):
         names = [f'{joint}_{side}' for side in 'rl'] if joint != 'lumbar_extension' else [joint]
         own = sum(three.torque[:, STRONG.index(name)] for name in names)
@@ -132,12 +139,12 @@ def test_symmetric_optimum_is_the_sagittal_one(
     task = place_task(who, upright(who), box, (1.2, 1.2), grid)
     spatial_parameters = with_criterion_of_the_plane(task.parameters, person)
     # The sagittal box may go anywhere when it has no size.
-    task.bounds.node_lower[:, row_slice(WAY_ROWS)] = -1e3
+    task.bounds.node_lower[:, constraint_slice(WAY_CONSTRAINTS)] = -1e3
     lumbar = LIMITED.index('lumbar_extension')
     task.bounds.angle_lower[:, lumbar] = person.angle_lower[JOINTS.index('lumbar_extension')]
     task.bounds.angle_upper[:, lumbar] = person.angle_upper[JOINTS.index('lumbar_extension')]
-    programme = spatial_programme(
-        spatial_assembler(spatial_library(), grid), grid, spatial_parameters, task.bounds
+    programme = spatial_nlp(
+        spatial_assembler(spatial_library(), grid), grid, spatial_parameters.pack(), task.bounds
     )
     fixed = np.ones((grid.spline.n_free, len(SPLINED)), dtype=bool)
     fixed[:, [SPLINED.index(name) for names in PLANAR.values() for name in names]] = False
@@ -162,7 +169,9 @@ def test_symmetric_optimum_is_the_sagittal_one(
         np.array([begin[[0, 2]], finish[[0, 2]]]), np.array([7.0, 7.0]),
     )  # fmt: skip
     flat_parameters = replace(parameters, circle=np.zeros_like(parameters.circle), box_radius=0.0)
-    flat = predictor.programme.solve(flat_parameters.pack(), bounds, Start('same', start, 7.0))
+    plane, ends = SagittalPlane(0.0, 0.0), np.stack((first, last))
+    flat_task = SagittalTask('same', 0.0, person, plane, None, flat_parameters, bounds, ends, ())
+    flat = predictor.sagittal.run(flat_task, Start('same', start, 7.0))
     assert flat.converged, flat.status
     assert solution.objective == pytest.approx(2.0 * flat.objective, rel=1e-4)
     for column, joint in enumerate(JOINTS):

@@ -8,18 +8,18 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from lift_predictor.core.solvers import cache
-from lift_predictor.core.solvers.layout import Group
-from lift_predictor.core.spatial.grid import SpatialGrid
-from lift_predictor.core.spatial.kernels import kernel_functions
-from lift_predictor.core.spatial.postures import guess
-from lift_predictor.core.spatial.programme import (
+from lift_predictor.core.models.spatial.assembly import (
     spatial_assembler,
     spatial_groups,
     spatial_library,
 )
-from lift_predictor.core.spatial.starts import through
-from lift_predictor.core.spatial.task import SpatialTask
+from lift_predictor.core.models.spatial.grid import SpatialGrid
+from lift_predictor.core.models.spatial.kernels import kernel_functions
+from lift_predictor.core.models.spatial.postures import guess
+from lift_predictor.core.models.spatial.starts import through
+from lift_predictor.core.models.spatial.task import SpatialTask
+from lift_predictor.core.solvers import cache
+from lift_predictor.core.solvers.layout import Group
 
 pytestmark = pytest.mark.skipif(
     cache.find_compiler() is None, reason='no C compiler on this machine'
@@ -103,9 +103,8 @@ def case(request: pytest.FixtureRequest, placed, functions: dict[str, Virtual]):
     reference = Reference(functions, spatial_groups(grid), grid.n_variables, p)
     rng = np.random.default_rng(4)
     ends = guess(task, 0), None, guess(task, 1)
-    x = through(task, grid, ends, 'guess', 7.0).variables() + 0.1 * rng.normal(
-        size=grid.n_variables
-    )
+    control = through(task, grid, ends, 'guess', 7.0).control.ravel()
+    x = np.append(control, (7.0, task.duration)) + 0.1 * rng.normal(size=grid.n_variables)
     return assembler, reference, x, rng
 
 

@@ -16,8 +16,8 @@ pytest.importorskip('pyarrow', reason='pyarrow is not installed')
 from human_model.report import SolveStatus
 from human_model.subject import Subject
 from lift_predictor.core.exceptions import PlanError, StudyError
-from lift_predictor.core.maximum_weight import Weighting
 from lift_predictor.core.planning.plan_task import PlanTask
+from lift_predictor.core.problem.maximum_weight import Weighting
 from lift_predictor.core.study.cases import Case
 from lift_predictor.core.study.rows import COLUMNS, CRASHED, crashed, empty_row, solve_case
 from lift_predictor.core.study.runner import run_study

@@ -133,7 +133,6 @@ class OfflineGraph:
             self._subject.marker_set,
             *inputs.task_from_msg(self._task),
         )
-        self._predictor.configure(self._tracker.subject)
         self._analyzer = MuscleAnalyzer(self._tracker.subject)
 
     def _take(self, outputs: list[tracked.Output]) -> None:
@@ -220,17 +219,18 @@ class OfflineGraph:
         assert self._tracker is not None
         lift = lift_from_msg(message)
         box = predictor_messages.box_from_msg(self._task, lift.box_mass)
-        prediction, comparison = self._predictor.predict_and_compare(lift, box)
+        prediction = self._predictor.predict(self._tracker.subject, lift, box)
         answer = predictor_messages.prediction_to_msg(prediction, lift, self._tracker.subject)
         self._emit('predicted_lift', answer)
-        if prediction.report.status is not SolveStatus.OK or comparison is None:
+        if prediction.report.status is not SolveStatus.OK or prediction.comparison is None:
             parts.no_prediction = f'prediction failed: {prediction.report.message}'
             return
         self._emit(
             'predicted_lift/joint_trajectory', predictor_messages.trajectory_to_msg(prediction)
         )
         self._emit(
-            'lift_comparison', predictor_messages.comparison_to_msg(comparison, prediction, lift)
+            'lift_comparison',
+            predictor_messages.comparison_to_msg(prediction.comparison, prediction, lift),
         )
         self._analyze_lift(answer, PREDICTED, parts)
 

@@ -41,9 +41,9 @@ def _run(options: argparse.Namespace) -> int:
     # Loads for long; the other commands need none of it.
     from human_model.exceptions import HumanModelError
     from lift_predictor.core.exceptions import LiftPredictorError
-    from lift_predictor.core.maximum_weight import Weighting
     from lift_predictor.core.planning.planner import LiftPlanner
     from lift_predictor.core.planning.task_file import read_task_file
+    from lift_predictor.core.problem.maximum_weight import Weighting
     from lifting_report.planned_results import write_plan
     from muscle_analyzer.core.exceptions import MuscleAnalyzerError
 
@@ -92,24 +92,23 @@ def described(planned: PlannedLift, files: PlanFiles) -> list[str]:
     report, task, summary = planned.report, planned.task, files.summary
     lines = [
         f'{task.name}: {report.status.name}: {report.message}',
-        f'  {report.iterations} iterations in {len(planned.prediction.optima)} runs, '
+        f'  {report.iterations} iterations in {len(planned.prediction.runs)} runs, '
         f'{report.solve_time:.2f} s; residuals {report.primal_residual:.1e} (constraints), '
         f'{report.dual_residual:.1e} (optimality)',
     ]
     if summary is None:
         return [*lines, f'written  {files.json}']
     heaviest = ' (the largest)' if task.box_mass is None else ''
+    spatial = planned.prediction.model == 'spatial'
     feet = ' (searched)' if task.feet is None else ''
     lines += [
         f'box      {summary.box_mass:.2f} kg{heaviest}, in {summary.duration:.2f} s',
         f'feet     ankles at forward {summary.ankle:.3f} m, left {summary.left:.3f} m, facing '
         f'{math.degrees(summary.heading):.0f} deg to the left{feet}',
-        f'effort   {summary.effort:.4f} s'
-        + (' (in space: each limb counts)' if planned.in_space else ''),
+        f'effort   {summary.effort:.4f} s' + (' (in space: each limb counts)' if spatial else ''),
         f'posture  Stoop-Squat-Index {summary.technique_index:.0f} at the start '
         f'(asked for: {task.technique})',
-        'joint torques nearest to their limits [N m]'
-        + (':' if planned.in_space else '; both limbs:'),
+        'joint torques nearest to their limits [N m]' + (':' if spatial else '; both limbs:'),
     ]
     lines += [
         f'  {peak.joint:<17} {peak.torque:8.1f} of {peak.limit:8.1f}  {100 * peak.share:5.1f} %  '
@@ -117,7 +116,7 @@ def described(planned: PlannedLift, files: PlanFiles) -> list[str]:
         for peak in sorted(summary.peaks, key=lambda peak: -peak.share)[:SHOWN]
     ]
     lines += [
-        f'limits touched: {"; ".join(_grouped(summary.binding)) or "none"}',
+        f'limits touched: {"; ".join(_grouped(summary.active_constraints)) or "none"}',
         f'ground reaction: up to {summary.peak_vertical_force:.0f} N vertical, '
         f'{summary.largest_horizontal_force:.0f} N horizontal',
         'box path (s: forward, left, up m): '

@@ -12,9 +12,9 @@ from typing import Any
 from human_model.exceptions import HumanModelError
 from lift_predictor import conversions as predictor_messages
 from lift_predictor.core.exceptions import LiftPredictorError
+from lift_predictor.core.models.sagittal.person import Person
 from lift_predictor.core.planning.planned_lift import PlannedLift
 from lift_predictor.core.planning.task_file import TaskFile
-from lift_predictor.core.sagittal.person import Person
 from lifting_report import __version__
 from lifting_report import results_curves as curves
 from lifting_report.figures.loads import LimitLine
@@ -69,14 +69,14 @@ def planned_report(planned: PlannedLift, entry: TaskFile, files: PlanFiles) -> P
         facts=_facts(planned, files),
         cards=() if summary is None else (*_spine_cards(spine, planned), _torque_card(peaks)),
         peaks=peaks,
-        binding=() if summary is None else summary.binding,
+        binding=() if summary is None else summary.active_constraints,
         shown=title,
         drawn=drawn,
         compression_limits=compression,
         shear_limits=shear,
         solves=(
             ('Status', report.status.name),
-            ('Iterations', f'{report.iterations} in {len(planned.prediction.optima)} runs'),
+            ('Iterations', f'{report.iterations} in {len(planned.prediction.runs)} runs'),
             ('Largest violation', f'{report.primal_residual:.1e}'),
             ('Optimality', f'{report.dual_residual:.1e}'),
             ('Time', f'{report.solve_time:.2f} s'),

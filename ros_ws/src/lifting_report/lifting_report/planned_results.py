@@ -16,9 +16,11 @@ from lifting_interfaces.msg import Task as TaskMsg
 
 from injury_monitor.core.limits import LimitSet, limits_for, zone_meaning
 from lift_predictor import conversions as predictor_messages
+from lift_predictor.core.planning.plan_task import Placement
 from lift_predictor.core.planning.planned_lift import PlannedLift
 from lift_predictor.core.planning.summary import PlanSummary, summarise
 from lift_predictor.core.planning.task_file import TaskFile
+from lift_predictor.core.problem.run import SolverRun
 from lifting_node.conversions import subject_to_msg
 from lifting_node.stamps import to_stamp
 from lifting_report.exceptions import ReportError
@@ -168,31 +170,36 @@ def _plain(
         'summary': None if summary is None else summary.to_dict(),
         'l5_s1': None if spine is None else asdict(spine),
         'verification': None if verification is None else verification.violation,
-        'placements': [asdict(placement) for placement in planned.placements],
-        'runs': [_run(run) for run in planned.prediction.optima],
+        'placements': [_placement(placement) for placement in planned.placements],
+        'runs': [_run(run) for run in planned.prediction.runs],
     }
     cleaned: dict[str, Any] = _finite(whole)
     return cleaned
 
 
-def _run(run: Any) -> dict[str, Any]:
-    """Return one run of the optimiser, sagittal or in space."""
-    plain = {'start': run.start, 'converged': run.converged}
-    if hasattr(run, 'solution'):
-        ended = run.solution
-        return plain | {
-            'outcome': str(ended.status),
-            'objective': ended.objective,
-            'iterations': ended.iterations,
-            'violation': ended.primal,
-            'solve_time': ended.solve_time,
-        }
-    return plain | {
-        'outcome': run.status,
-        'objective': run.objective,
-        'iterations': run.iterations,
-        'violation': run.violation,
-        'solve_time': run.solve_time,
+def _placement(placement: Placement) -> dict[str, Any]:
+    """Return one place of the feet that was tried."""
+    feet = placement.feet
+    return {
+        'ankle': feet.forward,
+        'value': placement.value,
+        'message': placement.message,
+        'left': feet.left,
+        'heading': feet.heading,
+    }
+
+
+def _run(run: SolverRun) -> dict[str, Any]:
+    """Return one run of the solver."""
+    solution = run.solution
+    return {
+        'start': run.start,
+        'converged': run.converged,
+        'outcome': str(run.status),
+        'objective': solution.objective,
+        'iterations': solution.iterations,
+        'violation': solution.primal,
+        'solve_time': solution.solve_time,
     }
 
 

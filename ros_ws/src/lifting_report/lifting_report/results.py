@@ -16,7 +16,7 @@ from human_model.exceptions import HumanModelError
 from human_model.report import SolveStatus
 from injury_monitor.core.alarm import AlarmState
 from lift_predictor.core.exceptions import LiftPredictorError
-from lift_predictor.core.sagittal.person import Person
+from lift_predictor.core.models.sagittal.person import Person
 from lifting_node.conversions import subject_from_msg
 from lifting_recordings.exceptions import BagError
 from lifting_report import __version__

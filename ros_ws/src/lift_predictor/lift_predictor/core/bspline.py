@@ -96,6 +96,14 @@ class RestToRestSpline:
             raise SplineError(f's = {s.min():g} .. {s.max():g}: outside [0, 1]')
         return _basis(self.knots, DEGREE, s, derivative) @ self._merge()
 
+    def sample(self, control: Array, s: Array, duration: float) -> tuple[Array, Array, Array]:
+        """Return coordinates (n, n_q) and two derivatives by time at normalised times s (n,).
+
+        `control` are the free control values, shape (n_free, n_q); the duration is in seconds.
+        """
+        q, dq, ddq = (self.basis(s, derivative) @ control for derivative in range(3))
+        return q, dq / duration, ddq / duration**2
+
     def fit(self, s: Array, values: Array) -> Array:
         """Free control values nearest to samples in the least-squares sense.
 

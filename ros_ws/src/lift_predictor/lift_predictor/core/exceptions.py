@@ -14,15 +14,11 @@ class SplineError(LiftPredictorError):
 
 
 class TaskError(LiftPredictorError):
-    """The input does not describe a sagittal lifting task; names field and value."""
-
-
-class AsymmetricLiftError(TaskError):
-    """The recorded lift turns or leans to a side, which the sagittal model cannot follow."""
+    """The input does not describe a lifting task; names field and value."""
 
 
 class UnreachableError(LiftPredictorError):
-    """The hands cannot be brought where the task wants them."""
+    """The hands cannot reach the places of the task."""
 
 
 class PlanError(TaskError):
@@ -30,7 +26,7 @@ class PlanError(TaskError):
 
 
 class CancelledError(LiftPredictorError):
-    """Somebody asked for the work to end before it was done."""
+    """The work was cancelled before its end."""
 
 
 class PercentileError(LiftPredictorError):

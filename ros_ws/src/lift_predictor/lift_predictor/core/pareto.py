@@ -17,15 +17,15 @@ import numpy as np
 
 from human_model.typing import Array
 from lift_predictor.core.exceptions import TaskError
-from lift_predictor.core.maximum_weight import (
+from lift_predictor.core.problem.maximum_weight import (
     MaximumWeight,
     Weighting,
     heaviest_box,
-    solve_maximum_weight,
+    maximum_weight,
 )
-from lift_predictor.core.predictor import LiftPredictor
-from lift_predictor.core.sagittal.task import LiftTask2D
-from lift_predictor.core.solvers.solver_run import Start
+from lift_predictor.core.problem.model import T
+from lift_predictor.core.problem.run import Start
+from lift_predictor.core.problem.task_solver import TaskSolver
 
 N_CASES: Final = 21
 """Pareto cases of section 2.5: w1 grows by 0.05."""
@@ -90,8 +90,8 @@ class TotalError:
 
 
 def pareto_curve(
-    predictor: LiftPredictor,
-    task: LiftTask2D,
+    solver: TaskSolver[T],
+    task: T,
     starts: Sequence[Start],
     progress: CaseProgress | None = None,
 ) -> ParetoCurve:
@@ -101,26 +101,26 @@ def pareto_curve(
 
     Parameters
     ----------
-    predictor : LiftPredictor
+    solver : TaskSolver
         Solves and checks.
-    task : LiftTask2D
-        Of `maximum_weight.maximum_weight_task`.
+    task : LiftTask
+        Of `LiftModel.maximum_weight_task`.
     starts : sequence of Start
         Initial guesses of the first case, the heaviest box.
     progress : callable, optional
-        Told the case and its result.
+        Called with the case and its result.
     """
-    heaviest = heaviest_box(predictor, task, starts)
+    heaviest = heaviest_box(solver, task, starts)
     results = [heaviest]
     if progress is not None:
         progress(0, heaviest)
     previous = heaviest
     for case, weighting in enumerate(weightings()[1:], 1):
         if heaviest.report.ok:
-            near = (previous.prediction.optima[0].as_start(),)
-            result = solve_maximum_weight(predictor, task, near, weighting, heaviest)
+            near = (previous.prediction.runs[0].as_start(),)
+            result = maximum_weight(solver, task, near, weighting, heaviest)
             if not result.report.ok:
-                result = solve_maximum_weight(predictor, task, starts, weighting, heaviest)
+                result = maximum_weight(solver, task, starts, weighting, heaviest)
         else:
             result = heaviest
         if result.report.ok:
@@ -184,7 +184,7 @@ def best_weighting(errors: Sequence[TotalError]) -> tuple[Weighting, Array]:
     Raises
     ------
     TaskError
-        Nobody, or no case that was solved for everybody.
+        No person, or no case that was solved for all.
     """
     mean = np.full(N_CASES, np.nan)
     if errors:

@@ -20,19 +20,18 @@ import numpy as np
 from human_model.exceptions import HumanModelError
 from human_model.motion import Lift
 from human_model.report import SolveStatus
-from human_model.subject import RANGES
+from human_model.subject import RANGES, Subject
 from lift_predictor.core.exceptions import PercentileError
-from lift_predictor.core.maximum_weight import (
+from lift_predictor.core.models.sagittal.person import Person
+from lift_predictor.core.models.sagittal.task import SagittalTask
+from lift_predictor.core.predictor import LiftPredictor
+from lift_predictor.core.problem.maximum_weight import (
     MaximumWeight,
     Weighting,
-    maximum_weight_task,
-    solve_maximum_weight,
+    maximum_weight,
 )
-from lift_predictor.core.predictor import LiftPredictor
-from lift_predictor.core.sagittal.person import Person
-from lift_predictor.core.sagittal.starts import make_starts
-from lift_predictor.core.sagittal.task import Box, LiftTask2D
-from lift_predictor.core.solvers.solver_run import Start
+from lift_predictor.core.problem.run import Start
+from lift_predictor.core.problem.task import Box
 
 Z_STEP: Final = 0.05
 """Step of the enumeration: the dissertation gives its z-score (1.05) to this step."""
@@ -77,7 +76,9 @@ class StrengthSearch:
     Parameters
     ----------
     predictor : LiftPredictor
-        With the subject configured, whose own z-score does not matter.
+        Its sagittal model predicts.
+    subject : Subject
+        Person; the own z-score does not matter.
     lift : Lift
         Recorded lift of the largest weight.
     box : Box
@@ -88,19 +89,23 @@ class StrengthSearch:
     Raises
     ------
     TaskError, UnreachableError
-        The lift cannot be turned into a task, or no subject was configured.
+        The lift cannot be turned into a task.
     """
 
     def __init__(
-        self, predictor: LiftPredictor, lift: Lift, box: Box, weighting: Weighting | None = None
+        self,
+        predictor: LiftPredictor,
+        subject: Subject,
+        lift: Lift,
+        box: Box,
+        weighting: Weighting | None = None,
     ) -> None:
-        self.predictor = predictor
+        self.solver = solver = predictor.sagittal
         self.weighting = weighting or Weighting()
-        self.task = maximum_weight_task(predictor, lift, box)
+        self.task = solver.model.maximum_weight_task(subject, lift, box)
         self.measured = box.mass * self.task.parameters.gravity
         self.tried: dict[float, MaximumWeight] = {}
-        self._starts = make_starts(self.task, predictor.programme.grid.spline)
-        subject = self.task.person.subject
+        self._starts = solver.model.starts(self.task)
         self._weakest, self._stronger = (
             Person.of(replace(subject, strength_z=z), predictor.options.coefficient_set)
             for z in (0.0, 1.0)
@@ -122,7 +127,7 @@ class StrengthSearch:
         limit = math.inf if spread == 0.0 else 1.0 / spread
         return max(low, -limit + Z_STEP), min(high, limit - Z_STEP)
 
-    def task_of(self, z: float) -> LiftTask2D:
+    def task_of(self, z: float) -> SagittalTask:
         """Return the task with the strength of a z-score: limits are linear in z (2.15, 2.18)."""
         lower, upper = (
             getattr(self._weakest, side)
@@ -143,9 +148,9 @@ class StrengthSearch:
         if z not in self.tried:
             # From the starts that a later prediction with this z-score has, or it could differ.
             task, near = self.task_of(z), self._last()
-            found = solve_maximum_weight(self.predictor, task, self._starts, self.weighting)
+            found = maximum_weight(self.solver, task, self._starts, self.weighting)
             if not found.report.ok and near is not None:
-                found = solve_maximum_weight(self.predictor, task, (near,), self.weighting)
+                found = maximum_weight(self.solver, task, (near,), self.weighting)
             self.tried[z] = found
         report = self.tried[z].report
         if not report.ok and not self._too_weak(self.tried[z]):
@@ -162,14 +167,14 @@ class StrengthSearch:
         nodes is more than any that passes all checks.
         """
         if failed.report.status is SolveStatus.PREDICTOR_VERIFICATION_FAILED:
-            at_nodes = max(run.box_mass for run in failed.prediction.optima if run.converged)
+            at_nodes = max(run.box_mass for run in failed.prediction.runs if run.converged)
             return bool(at_nodes * self.task.parameters.gravity < self.measured)
         return failed.report.status is SolveStatus.PREDICTOR_INFEASIBLE
 
     def _last(self) -> Start | None:
         """Return the lift that was solved last."""
         solved = [found for found in self.tried.values() if found.report.ok]
-        return solved[-1].prediction.optima[0].as_start() if solved else None
+        return solved[-1].prediction.runs[0].as_start() if solved else None
 
     def result(self, z: float) -> Percentile:
         """Return what was found at a z-score that was tried."""
@@ -189,6 +194,7 @@ class StrengthSearch:
 
 def percentile_by_enumeration(
     predictor: LiftPredictor,
+    subject: Subject,
     lift: Lift,
     box: Box,
     weighting: Weighting | None = None,
@@ -199,7 +205,9 @@ def percentile_by_enumeration(
     Parameters
     ----------
     predictor : LiftPredictor
-        With the subject configured.
+        Its sagittal model predicts.
+    subject : Subject
+        Person; the own z-score does not matter.
     lift : Lift
         Recorded lift of the largest weight.
     box : Box
@@ -216,7 +224,7 @@ def percentile_by_enumeration(
     TaskError, UnreachableError
         The lift cannot be turned into a task.
     """
-    search = _search(predictor, lift, box, weighting)
+    search = _search(predictor, subject, lift, box, weighting)
     low, high = search.range
     grid = [step * k for k in range(math.ceil(low / step), math.floor(high / step) + 1)]
     weights = np.array([search.weight(z) for z in _from_the_middle(grid)])
@@ -229,13 +237,17 @@ def percentile_by_enumeration(
 
 
 def percentile_by_root(
-    predictor: LiftPredictor, lift: Lift, box: Box, weighting: Weighting | None = None
+    predictor: LiftPredictor,
+    subject: Subject,
+    lift: Lift,
+    box: Box,
+    weighting: Weighting | None = None,
 ) -> Percentile:
     """Find the z-score whose predicted maximum weight is the measured one, by a root search.
 
     Parameters and errors are those of `percentile_by_enumeration`.
     """
-    search = _search(predictor, lift, box, weighting)
+    search = _search(predictor, subject, lift, box, weighting)
     low, high = _bracket(search)
     while len(search.tried) < _MAX_PREDICTIONS:
         below, above = search.weight(low), search.weight(high)
@@ -255,10 +267,10 @@ def percentile_by_root(
 
 
 def _search(
-    predictor: LiftPredictor, lift: Lift, box: Box, weighting: Weighting | None
+    predictor: LiftPredictor, subject: Subject, lift: Lift, box: Box, weighting: Weighting | None
 ) -> StrengthSearch:
     try:
-        return StrengthSearch(predictor, lift, box, weighting)
+        return StrengthSearch(predictor, subject, lift, box, weighting)
     except HumanModelError as error:
         raise PercentileError(str(error)) from error
 
@@ -292,5 +304,5 @@ def _bracket(search: StrengthSearch) -> tuple[float, float]:
 
 def _between(low: float, high: float, below: float, above: float, wanted: float) -> float:
     """Secant point of a bracket, kept away from its ends; the middle without a weight below."""
-    share = 0.5 if math.isnan(below) else (wanted - below) / (above - below)
-    return low + min(max(share, 0.05), 0.95) * (high - low)
+    fraction = 0.5 if math.isnan(below) else (wanted - below) / (above - below)
+    return low + min(max(fraction, 0.05), 0.95) * (high - low)

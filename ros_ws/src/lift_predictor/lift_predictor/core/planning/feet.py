@@ -1,114 +1,116 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Finds where to stand: the distance to the box from which the lift takes least effort."""
+"""Search of the place of the feet from which the lift takes least effort."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Final
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lift_predictor.core.exceptions import UnreachableError
-from lift_predictor.core.maximum_weight import Weighting
-from lift_predictor.core.planning.plan_task import FARTHEST, NEAREST, PlanTask
-from lift_predictor.core.planning.solve import (
-    Listener,
-    PlanProgress,
-    SolvedPlan,
-    finite_best,
-    solve_plan,
-)
-from lift_predictor.core.predictor import LiftPredictor
+from lift_predictor.core.exceptions import TaskError, UnreachableError
+from lift_predictor.core.planning.plan_task import FARTHEST, NEAREST, Feet, Placement, PlanTask
+from lift_predictor.core.planning.planned_lift import PlannedLift
+from lift_predictor.core.problem.model import T
+from lift_predictor.core.problem.run import SolverRun, Start
 
-DISTANCES: Final = 5
-"""Distances that are tried first, evenly spread."""
-HALVINGS: Final = 3
-"""How often the spacing is halved round the best one: to 1.2 cm."""
+if TYPE_CHECKING:
+    from lift_predictor.core.planning.planner import Planning
 
 
-@dataclass(frozen=True)
-class Placement:
-    """One place of the feet that was tried.
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """A plan that was solved for feet at one place.
 
     Attributes
     ----------
-    ankle : float
-        Middle of the ankles, forward [m].
+    feet : Feet
+        The place.
     value : float
-        Effort [s], or minus the mass [kg] where it is maximised; infinite: no lift from there.
+        Effort [s], or minus the mass [kg] where it is maximised; infinite: no lift.
     message : str
-        Of the solve, or why there was none.
-    left : float
-        Middle of the ankles, to the left [m].
-    heading : float
-        Direction of the feet, 0: forward [rad]; another one in space only.
+        Of the solve.
+    run : SolverRun
+        Best run.
+    planned : PlannedLift or None
+        The whole lift, checked; None: one run at the nodes.
     """
 
-    ankle: float
+    feet: Feet
     value: float
     message: str
-    left: float = 0.0
-    heading: float = 0.0
+    run: SolverRun
+    planned: PlannedLift | None = None
+
+    @property
+    def start(self) -> Start | None:
+        """Initial guess for neighbouring places; None: no solution."""
+        start = replace(self.run.as_start('neighbour'), near=False)
+        return start if np.isfinite(self.value) else None
 
 
-def place_feet(
-    predictor: LiftPredictor,
-    task: PlanTask,
-    weighting: Weighting,
-    listener: Listener | None = None,
-) -> tuple[SolvedPlan, tuple[Placement, ...]]:
-    """Search the place of the feet: even distances first, then closer and closer to the best.
+def search_feet(planning: Planning[T], task: PlanTask) -> tuple[Trial, tuple[Placement, ...]]:
+    """Search the place of the feet: candidates, then steps from the best that become shorter.
 
-    Every place is solved from one made-up start, and from the motion of the best place so far.
+    Each place is solved from the motion of the best place so far. It is a search for a good place
+    near good candidates, not a proof.
 
     Raises
     ------
     UnreachableError
-        From no place can the box be held at both ends; carries the reason at the best distance.
+        From no place can the box be held at both ends; carries the last reason.
     """
-    near = task.nearer
-    tried: dict[float, Placement] = {}
-    best: SolvedPlan | None = None
-    kept: SolvedPlan | None = None
-    total = DISTANCES + 2 * HALVINGS
-    reach_error: UnreachableError | None = None
+    model = planning.model
+    tried: dict[Feet, Placement] = {}
+    best: Trial | None = None
+    kept: Trial | None = None
+    reason = ''
+    first = model.first_feet(task)
+    total = len(first) + model.feet_moves * len(model.feet_rounds())
 
-    def attempt(distance: float) -> None:
-        nonlocal best, kept, reach_error
-        ankle = round(near - distance, 4)
-        if ankle in tried:
-            return
+    def attempt(feet: Feet) -> bool:
+        """Try a place; return whether it is the best so far."""
+        nonlocal best, kept, reason
+        if feet in tried:
+            return False
+        better = False
         try:
-            first = () if best is None else (best.start(),)
-            solved = solve_plan(predictor, task, ankle, 1, weighting, first)
-            tried[ankle] = Placement(
-                ankle, solved.value, solved.prediction.report.message, task.lateral
-            )
-            if np.isfinite(solved.value) and (best is None or solved.value < best.value):
-                best = solved
-            kept = best or solved
-        except UnreachableError as error:
-            reach_error = error
-            tried[ankle] = Placement(ankle, float('inf'), str(error), task.lateral)
-        if listener is not None:
-            value = finite_best([p.value for p in tried.values()])
-            listener(PlanProgress('feet', len(tried), total, value))
+            trial = planning.trial(task, feet, best)
+            value, message = trial.value, trial.message
+            if np.isfinite(value) and (best is None or value < best.value):
+                best, better = trial, True
+            kept = best or _nearer_to_feasible(kept, trial)
+        except (UnreachableError, TaskError) as error:
+            value, message = float('inf'), str(error)
+            reason = message
+        tried[feet] = Placement(feet, value, message)
+        known = [p.value for p in tried.values() if np.isfinite(p.value)]
+        least = min(known, default=float('nan'))
+        planning.report('feet', len(tried), max(total, len(tried)), least)
+        return better
 
-    for distance in np.linspace(NEAREST, FARTHEST, DISTANCES):
-        attempt(float(distance))
-    spacing = (FARTHEST - NEAREST) / (DISTANCES - 1)
-    for _ in range(HALVINGS):
+    for feet in first:
+        attempt(feet)
+    for scale in model.feet_rounds():
         if best is None:
             break
-        spacing *= 0.5
-        middle = near - float(best.plan.task.parameters.ankle[0])
-        for distance in (middle - spacing, middle + spacing):
-            if NEAREST <= distance <= FARTHEST:
-                attempt(distance)
+        around = model.feet_around(task, best.feet, scale)
+        if not model.probes:
+            for feet in around:
+                attempt(feet)
+            continue
+        while any(attempt(feet) for feet in around):
+            around = model.feet_around(task, best.feet, scale)
     if kept is None:
         raise UnreachableError(
             f'task.feet: from none of {len(tried)} places between {NEAREST:g} and {FARTHEST:g} m '
-            f'behind the nearer place of the box can both be reached; from the last: {reach_error}'
+            f'from the nearer place of the box can both be reached; from the last: {reason}'
         )
-    return kept, tuple(sorted(tried.values(), key=lambda placement: placement.ankle))
+    return kept, tuple(sorted(tried.values(), key=lambda placement: placement.feet.forward))
+
+
+def _nearer_to_feasible(kept: Trial | None, other: Trial) -> Trial:
+    if kept is None:
+        return other
+    return min((kept, other), key=lambda trial: trial.run.solution.primal)

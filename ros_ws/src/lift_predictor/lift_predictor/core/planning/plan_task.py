@@ -27,7 +27,52 @@ FARTHEST: Final = 0.63
 """Distances of the hands from the middle of the ankles between which free feet are placed, at the
 nearer end of the lift [m]: the range of H in the revised NIOSH lifting equation (Waters 1993)."""
 
+STANDARD_HEIGHT: Final = 0.75
+STANDARD_DISTANCE: Final = 0.20
+"""Standard location of the revised NIOSH lifting equation, where its multipliers are 1 (Waters
+1994, NIOSH 94-110): height of the hands over the floor and, beside half the depth of the box,
+distance before the ankles [m]."""
+
+MOVED_ENDS: Final = (('end',), ('start',), ('start', 'end'))
+"""Places that are moved to find the nearest feasible lift, in the order of the trials."""
+
 Point = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Feet:
+    """Place of the feet: parallel, below the hips, as in the sagittal model.
+
+    Attributes
+    ----------
+    forward, left : float
+        Middle of both ankles in the laboratory [m].
+    heading : float
+        Direction of the feet about the vertical, 0: forward, positive to the left [rad].
+    """
+
+    forward: float
+    left: float
+    heading: float = 0.0
+
+
+@dataclass(frozen=True)
+class Placement:
+    """One place of the feet that was tried.
+
+    Attributes
+    ----------
+    feet : Feet
+        The place.
+    value : float
+        Effort [s], or minus the mass [kg] where it is maximised; infinite: no lift from there.
+    message : str
+        Of the solve, or the reason why there was none.
+    """
+
+    feet: Feet
+    value: float
+    message: str
 
 
 @dataclass(frozen=True)
@@ -123,23 +168,29 @@ class PlanTask:
         return self.start[1] if self.feet is None else self.feet[1]
 
     @property
-    def lies_aside(self) -> bool:
-        """Whether a place of the box is out of the sagittal plane.
+    def asymmetry(self) -> str:
+        """Reason why the task does not fit the sagittal model; empty: it fits.
 
         Where the feet are free: of feet that face forward behind the start, as near as they may.
         """
-        ankle = self.nearer - NEAREST if self.feet is None else self.feet[0]
-        return self.asymmetry(ankle) > LATERAL_TOLERANCE
+        return self.asymmetry_from(self.nearer - NEAREST if self.feet is None else self.feet[0])
+
+    def asymmetry_from(self, ankle: float) -> str:
+        """Return the same for ankles at a place, forward [m].
+
+        The angle is the asymmetry angle A of the revised NIOSH lifting equation.
+        """
+        places = (self.start, self.end)
+        angle = max(abs(float(np.arctan2(y - self.lateral, x - ankle))) for x, y, _ in places)
+        if angle <= LATERAL_TOLERANCE:
+            return ''
+        return (
+            f'task.start, task.end: the box is up to {np.degrees(angle):.0f} deg out of the '
+            f'sagittal plane of feet at forward {ankle:.3f} m, left {self.lateral:.3f} m; the '
+            f'sagittal model allows {np.degrees(LATERAL_TOLERANCE):.0f} deg'
+        )
 
     @property
     def nearer(self) -> float:
         """How far forward the hands are at the nearer place [m]."""
         return min(self.start[0], self.end[0]) - self.box_from_grip[0]
-
-    def asymmetry(self, ankle: float) -> float:
-        """Largest angle of a place of the box out of the sagittal plane [rad].
-
-        The asymmetry angle A of the revised NIOSH lifting equation, for ankles at `ankle`.
-        """
-        places = (self.start, self.end)
-        return max(abs(float(np.arctan2(y - self.lateral, x - ankle))) for x, y, _ in places)

@@ -5,16 +5,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Final
 
 from human_model.report import SolveReport
 from human_model.subject import Subject
-from lift_predictor.core.planning.feet import Placement
-from lift_predictor.core.planning.plan_task import PlanTask
-from lift_predictor.core.sagittal.prediction import PredictedLift2D
+from lift_predictor.core.planning.plan_task import Feet, Placement, PlanTask
+from lift_predictor.core.problem.prediction import Prediction
 
-if TYPE_CHECKING:
-    from lift_predictor.core.spatial.prediction import PredictedLift3D
+UNKNOWN_FEET: Final = Feet(float('nan'), float('nan'), float('nan'))
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,36 +22,25 @@ class PlannedLift:
     Attributes
     ----------
     subject : Subject
-        Who lifts.
+        Person.
     task : PlanTask
-        What was asked for.
-    prediction : PredictedLift2D or PredictedLift3D
-        The lift; its report says whether there is one. In space where the box lies aside.
-    ankle, left : float
-        Middle of the ankles, forward and to the left [m]; NaN where none was found or the task was
-        refused.
-    heading : float
-        Direction of the feet about the vertical, 0: forward, positive to the left [rad].
+        The task.
+    prediction : Prediction
+        The lift; its report holds the status. By the spatial model where the box lies aside.
+    feet : Feet
+        Place of the feet; NaN where none was found or the task was refused.
     index : float
         Stoop-Squat-Index of the first posture; NaN without a lift, or where C7 is not lowered.
     placements : tuple of Placement
         Places that were tried, if the feet were free.
-    binding : tuple of str
-        Limits that the lift touches, the one that costs most first.
-    effort : float
-        Effort of a lift in space (first term of equation 3.9) [s]; otherwise NaN.
     """
 
     subject: Subject
     task: PlanTask
-    prediction: PredictedLift2D | PredictedLift3D
-    ankle: float
-    left: float
-    heading: float
-    index: float
-    placements: tuple[Placement, ...]
-    binding: tuple[str, ...]
-    effort: float = float('nan')
+    prediction: Prediction
+    feet: Feet = UNKNOWN_FEET
+    index: float = float('nan')
+    placements: tuple[Placement, ...] = ()
 
     @property
     def report(self) -> SolveReport:
@@ -61,20 +48,10 @@ class PlannedLift:
         return self.prediction.report
 
     @property
-    def in_space(self) -> bool:
-        """Whether it was planned in space."""
-        return not isinstance(self.prediction, PredictedLift2D)
-
-
-@dataclass(frozen=True, eq=False)
-class SagittalPlan(PlannedLift):
-    """A planned lift in the sagittal plane."""
-
-    prediction: PredictedLift2D
-
-
-@dataclass(frozen=True, eq=False)
-class SpatialPlan(PlannedLift):
-    """A planned lift in space."""
-
-    prediction: PredictedLift3D
+    def value(self) -> float:
+        """Effort [s], or minus the mass [kg] where it is maximised; infinite: no lift."""
+        if not self.report.ok:
+            return float('inf')
+        if self.task.box_mass is None:
+            return -self.prediction.box_mass
+        return self.report.objective

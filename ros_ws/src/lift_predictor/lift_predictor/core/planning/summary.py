@@ -1,15 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""The numbers of a planned lift that a person wants to read, and the whole of it as plain data."""
+"""The key figures of a planned lift, and the whole of it as plain data."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 
+from lift_predictor.core.options import SPATIAL
 from lift_predictor.core.planning.planned_lift import PlannedLift
 
 
@@ -50,8 +50,8 @@ class PlanSummary:
         Middle of the ankles, forward and to the left [m]; direction of the feet [rad].
     peaks : tuple of TorquePeak
         One a joint, as the prediction orders them.
-    binding : tuple of str
-        Limits the lift touches.
+    active_constraints : tuple of str
+        Limits that hold the effort back, the strongest first.
     peak_vertical_force, largest_horizontal_force : float
         Ground reaction of both feet [N].
     box_path : tuple of (time, forward, left, up)
@@ -66,14 +66,16 @@ class PlanSummary:
     left: float
     heading: float
     peaks: tuple[TorquePeak, ...]
-    binding: tuple[str, ...]
+    active_constraints: tuple[str, ...]
     peak_vertical_force: float
     largest_horizontal_force: float
     box_path: tuple[tuple[float, float, float, float], ...]
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for JSON."""
-        return asdict(self)
+        plain = asdict(self)
+        plain['binding'] = plain.pop('active_constraints')
+        return plain
 
 
 def summarise(planned: PlannedLift) -> PlanSummary | None:
@@ -89,20 +91,17 @@ def summarise(planned: PlannedLift) -> PlanSummary | None:
         axis=1
     )
     box = np.where(np.isfinite(motion.box_position), motion.box_position, hands)
-    effort = planned.effort
-    if math.isnan(effort):
-        span = prediction.torque_upper - prediction.torque_lower
-        effort = float(np.trapezoid(((prediction.torque / span)[:, :-1] ** 2).sum(axis=1), time))
+    spatial = prediction.model == SPATIAL
     return PlanSummary(
         box_mass=prediction.box_mass,
-        effort=effort,
+        effort=prediction.effort if spatial else prediction.sampled_effort,
         duration=prediction.duration,
         technique_index=planned.index,
-        ankle=planned.ankle,
-        left=planned.left,
-        heading=planned.heading,
+        ankle=planned.feet.forward,
+        left=planned.feet.left,
+        heading=planned.feet.heading,
         peaks=tuple(_peak(planned, time, j) for j in range(len(prediction.torque_names))),
-        binding=planned.binding,
+        active_constraints=prediction.active_constraints,
         peak_vertical_force=float(ground[:, 2].max()),
         largest_horizontal_force=float(np.abs(ground[:, 0]).max()),
         box_path=tuple(

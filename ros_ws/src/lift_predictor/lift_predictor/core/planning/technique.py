@@ -22,9 +22,6 @@ import numpy as np
 
 from human_model.typing import Array
 from lift_predictor.core.exceptions import PlanError
-from lift_predictor.core.sagittal.kinematics import chain_positions
-from lift_predictor.core.sagittal.parameters import LiftParameters
-from lift_predictor.core.sagittal.person import Person
 
 FREE: Final = 'free'
 
@@ -75,28 +72,21 @@ def technique(name: str) -> Technique:
     return known[name]
 
 
-def technique_range(wanted: Technique) -> tuple[float, float] | None:
+def technique_range(wanted: Technique | None) -> tuple[float, float] | None:
     """Range of the index that the search for a posture aims at; None: any."""
-    if wanted.lower is None or wanted.upper is None:
+    if wanted is None or wanted.lower is None or wanted.upper is None:
         return None
     inside = min(INDEX_INSIDE, 0.4 * (wanted.upper - wanted.lower))
     return wanted.lower + inside, wanted.upper - inside
 
 
-def lowering(q: Array, person: Person, parameters: LiftParameters) -> tuple[Array, Array]:
-    """How far hips and C7 are below their height in upright standing (n,) [m]."""
-    state = chain_positions(q, parameters)
-    neutral = person.neutral
-    offset = (neutral['c7'] - neutral['l5_s1'])[[0, 2]]
-    angle = state.angles['trunk']
-    c7 = state.joints['lumbar'][:, 1] + np.sin(angle) * offset[0] + np.cos(angle) * offset[1]
-    ankle = neutral['ankle_r'][2] - parameters.ankle[1]
-    hips = neutral['hip_r'][2] - ankle - state.joints['hip'][:, 1]
-    return hips, neutral['c7'][2] - ankle - c7
+def off_technique(hips: Array, c7: Array, index: tuple[float, float]) -> Array:
+    """Distance of the hips from the range of an index (n,) [m], by the lowering of hips and C7."""
+    low, high = ((1.0 - limit / 100.0) * c7 for limit in index)
+    return np.maximum(np.maximum(hips - low, high - hips), 0.0)
 
 
-def stoop_squat_index(q: Array, person: Person, parameters: LiftParameters) -> Array:
-    """Stoop-Squat-Index of postures q (n, 6); NaN where C7 is not lowered."""
-    hips, c7 = lowering(q, person, parameters)
+def squat_index(hips: Array, c7: Array) -> Array:
+    """Stoop-Squat-Index (n,) of a lowering of hips and C7 [m]; NaN where C7 is not lowered."""
     lowered = c7 > 0.0
     return np.where(lowered, 100.0 * (1.0 - hips / np.where(lowered, c7, 1.0)), np.nan)

@@ -17,8 +17,8 @@ from typing import Any, Final
 import casadi as ca
 
 from human_model.cache import cache_directory
-from lift_predictor.core.sagittal.grid import Grid
-from lift_predictor.core.sagittal.nlp import programme_functions
+from lift_predictor.core.models.sagittal.grid import SagittalGrid
+from lift_predictor.core.models.sagittal.nlp import programme_functions
 from lift_predictor.core.solvers import cache
 
 FLAGS: Final = ('-O1', '-fPIC', '-shared')
@@ -31,7 +31,7 @@ class Programme:
 
     Attributes
     ----------
-    grid : Grid
+    grid : SagittalGrid
         Its sizes.
     library : Path or None
         The compiled library; None if the functions run in CasADi's virtual machine.
@@ -43,14 +43,14 @@ class Programme:
         In words: from the cache, compiled, or in the virtual machine and why.
     """
 
-    grid: Grid
+    grid: SagittalGrid
     library: Path | None
     functions: dict[str, Any]
     build_time: float
     backend: str
 
 
-def build_programme(grid: Grid) -> Programme:
+def build_programme(grid: SagittalGrid) -> Programme:
     """Load the compiled functions of a grid, compiling them first if the cache has none.
 
     Without a C compiler, or if it fails, the functions run in CasADi's virtual machine (slower,
@@ -75,12 +75,12 @@ def build_programme(grid: Grid) -> Programme:
     return Programme(grid, library, functions, time.perf_counter() - start, how)
 
 
-def content_hash(grid: Grid, compiler: str) -> str:
+def content_hash(grid: SagittalGrid, compiler: str) -> str:
     """Return the hash of everything that decides the content of a compiled library."""
     return cache.content_hash([Path(__file__)], (grid, FLAGS), compiler)
 
 
-def _compile(grid: Grid, compiler: str, scratch: Path, built: Path) -> None:
+def _compile(grid: SagittalGrid, compiler: str, scratch: Path, built: Path) -> None:
     generator = ca.CodeGenerator('programme.c')
     for function in programme_functions(grid):
         generator.add(function)
@@ -89,7 +89,7 @@ def _compile(grid: Grid, compiler: str, scratch: Path, built: Path) -> None:
     cache.run_compiler([compiler, *FLAGS, source, '-o', str(built), '-lm'])
 
 
-def _virtual_machine(grid: Grid, start: float, reason: str) -> Programme:
+def _virtual_machine(grid: SagittalGrid, start: float, reason: str) -> Programme:
     functions = {function.name(): function for function in programme_functions(grid)}
     how = f"functions run in CasADi's virtual machine: {reason}"
     return Programme(grid, None, functions, time.perf_counter() - start, how)

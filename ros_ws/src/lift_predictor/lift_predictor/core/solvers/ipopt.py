@@ -12,15 +12,14 @@ import casadi as ca
 import numpy as np
 
 from human_model.typing import Array
-from lift_predictor.core.sagittal.grid import LiftBounds
-from lift_predictor.core.sagittal.programme import variable_name
+from lift_predictor.core.models.sagittal.grid import LiftBounds
 from lift_predictor.core.solvers.compiled import Programme
 from lift_predictor.core.solvers.solver_run import (
     ACTIVE_MULTIPLIER,
     FEASIBILITY_TOLERANCE,
+    Guess,
     Progress,
     SolverRun,
-    Start,
     best_first,
     runs_until,
 )
@@ -77,7 +76,7 @@ class LiftSolver:
             f, g = functions['nlp'](x, p)
             self._ipopt = ca.nlpsol('lift', 'ipopt', {'x': x, 'p': p, 'f': f, 'g': g}, options)
 
-    def solve(self, parameters: Array, bounds: LiftBounds, start: Start) -> SolverRun:
+    def solve(self, parameters: Array, bounds: LiftBounds, start: Guess) -> SolverRun:
         """Run IPOPT from one start.
 
         Parameters
@@ -92,7 +91,7 @@ class LiftSolver:
         begin = time.perf_counter()
         grid = self.programme.grid
         lbx, ubx = bounds.variables(grid)
-        lbg, ubg = bounds.rows(grid)
+        lbg, ubg = bounds.constraints(grid)
         x0 = np.clip(np.append(start.control, start.box_mass), lbx, ubx)
         result = self._ipopt(x0=x0, p=parameters, lbx=lbx, ubx=ubx, lbg=lbg, ubg=ubg)
         stats = self._ipopt.stats()
@@ -117,7 +116,7 @@ class LiftSolver:
             start=start.name,
             converged=bool(stats['success']) and violation <= FEASIBILITY_TOLERANCE,
             status=str(stats['return_status']),
-            control=x[: grid.n_angles].reshape(grid.spline.n_free, -1),
+            control=x[: grid.n_splined].reshape(grid.spline.n_free, -1),
             box_mass=float(x[-1]),
             objective=float(result['f']),
             iterations=int(stats['iter_count']),
@@ -133,7 +132,7 @@ class LiftSolver:
         self,
         parameters: Array,
         bounds: LiftBounds,
-        starts: Sequence[Start],
+        starts: Sequence[Guess],
         deadline: float = float('inf'),
         progress: Progress | None = None,
     ) -> tuple[SolverRun, ...]:
@@ -160,8 +159,8 @@ class LiftSolver:
     def _name(self, index: int) -> str:
         n = self.programme.grid.n_variables
         if index >= n:
-            return self.programme.grid.row_names[index - n]
-        return variable_name(self.programme.grid, index)
+            return self.programme.grid.constraint_names[index - n]
+        return self.programme.grid.variable_name(index)
 
 
 def _largest_violation(values: Array, low: Array, high: Array) -> tuple[float, int]:

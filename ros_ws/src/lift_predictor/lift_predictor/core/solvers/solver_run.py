@@ -7,7 +7,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, Protocol
 
 from human_model.typing import Array
 
@@ -34,6 +34,25 @@ class Start:
     control: Array
     box_mass: float = 0.0
     near: bool = False
+
+
+class Guess(Protocol):
+    """An initial guess: name, free control values, box mass [kg]."""
+
+    @property
+    def name(self) -> str:
+        """Name, for messages."""
+        ...
+
+    @property
+    def control(self) -> Array:
+        """Free control values [rad]."""
+        ...
+
+    @property
+    def box_mass(self) -> float:
+        """[kg]."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -89,8 +108,8 @@ class SolverRun:
 
 def runs_until(
     deadline: float,
-    run: Callable[[Start], SolverRun],
-    starts: Sequence[Start],
+    run: Callable[[Guess], SolverRun],
+    starts: Sequence[Guess],
     progress: Progress | None = None,
 ) -> list[SolverRun]:
     """Run from every start in turn; none but the first is begun after the deadline.

@@ -11,8 +11,8 @@ from functools import cached_property
 from typing import Any, Final
 
 from human_model.subject import Subject
-from lift_predictor.core.maximum_weight import Weighting
 from lift_predictor.core.planning.plan_task import PlanTask
+from lift_predictor.core.problem.maximum_weight import Weighting
 
 FORMAT: Final = 1
 """Raised when the meaning of a case or of a row changes, so that old rows are not taken for it."""

@@ -11,6 +11,7 @@ from functools import cache
 from typing import Any, Final
 
 from human_model.report import SolveStatus
+from lift_predictor.core.options import SPATIAL
 from lift_predictor.core.planning.planned_lift import PlannedLift
 from lift_predictor.core.planning.planner import LiftPlanner
 from lift_predictor.core.planning.summary import summarise
@@ -109,7 +110,7 @@ def _of_plan(planned: PlannedLift) -> dict[str, Any]:
     report, verification = planned.report, planned.prediction.verification
     status = SolveStatus(report.status)
     row: dict[str, Any] = {
-        'model': 'space' if planned.in_space else 'plane',
+        'model': 'space' if planned.prediction.model == SPATIAL else 'plane',
         'status': int(status),
         'status_name': status.name,
         'message': report.message,
@@ -119,7 +120,7 @@ def _of_plan(planned: PlannedLift) -> dict[str, Any]:
         'dual_residual': report.dual_residual,
         'build_time': report.build_time,
         'solve_time': report.solve_time,
-        'runs': len(planned.prediction.optima),
+        'runs': len(planned.prediction.runs),
     }
     if verification is not None:
         row['worst_violation'] = '; '.join(
@@ -140,5 +141,5 @@ def _of_plan(planned: PlannedLift) -> dict[str, Any]:
         'peak_vertical_force': summary.peak_vertical_force,
         'largest_share': worst.share,
         'largest_share_joint': worst.joint,
-        'binding': '; '.join(summary.binding),
+        'binding': '; '.join(summary.active_constraints),
     }

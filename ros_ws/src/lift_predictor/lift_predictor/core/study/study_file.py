@@ -38,10 +38,10 @@ import numpy as np
 
 from human_model.subject import Subject
 from lift_predictor.core.exceptions import PlanError, TaskError
-from lift_predictor.core.maximum_weight import Weighting
 from lift_predictor.core.planning.fields import Fields, read_yaml
 from lift_predictor.core.planning.plan_task import PlanTask
 from lift_predictor.core.planning.task_file import read_task, read_task_file
+from lift_predictor.core.problem.maximum_weight import Weighting
 from lift_predictor.core.study.cases import Case
 from lift_predictor.core.study.population import read_subjects
 

@@ -1,0 +1,64 @@
+# SPDX-FileCopyrightText: 2026 The lift monitor authors
+# SPDX-License-Identifier: Apache-2.0
+"""Library of solved lifts: initial guesses from other persons and tasks.
+
+`data/solved_lifts.csv` holds the free control values [rad] of 7 control points per joint; the file
+is made by `benchmarks/solved_lifts.py`. They lead to minima that generated initial
+guesses do not find.
+"""
+
+from __future__ import annotations
+
+import csv
+from functools import cache
+from importlib.resources import files
+from typing import Final
+
+import numpy as np
+
+from human_model.typing import Array
+from lift_predictor.core.bspline import RestToRestSpline
+from lift_predictor.core.exceptions import TaskError
+from lift_predictor.core.models.sagittal.parameters import JOINTS
+from lift_predictor.core.problem.run import Start
+
+N_CONTROL: Final = 7
+"""Control points of the library's splines."""
+_DENSE: Final = 41
+
+
+@cache
+def solved_lifts() -> tuple[Array, ...]:
+    """Read the library: control values (5, 6) [rad] of each lift.
+
+    Raises
+    ------
+    TaskError
+        A lift without all control points, or a value that is no number.
+    """
+    text = (files('lift_predictor') / 'data' / 'solved_lifts.csv').read_text(encoding='utf-8')
+    lifts: dict[str, list[list[float]]] = {}
+    for line, row in enumerate(csv.DictReader(text.splitlines()), 2):
+        try:
+            values = [float(row[joint]) for joint in JOINTS]
+        except (KeyError, TypeError, ValueError) as error:
+            raise TaskError(f'solved_lifts.csv, line {line}: {error}') from error
+        lifts.setdefault(row['lift'], []).append(values)
+    n_free = RestToRestSpline(N_CONTROL).n_free
+    for name, points in lifts.items():
+        if len(points) != n_free:
+            raise TaskError(
+                f'solved_lifts.csv: lift {name} has {len(points)} points, not {n_free}'
+            )
+    return tuple(np.array(points) for points in lifts.values())
+
+
+def library_starts(spline: RestToRestSpline) -> tuple[Start, ...]:
+    """Return the library's lifts as initial guesses on a spline."""
+    source = RestToRestSpline(N_CONTROL)
+    s = np.linspace(0.0, 1.0, _DENSE)
+    starts = []
+    for number, control in enumerate(solved_lifts(), 1):
+        own = control if spline == source else spline.fit(s, source.basis(s) @ control)
+        starts.append(Start(f'solved lift {number}', own, near=True))
+    return tuple(starts)

@@ -1,3 +1,0 @@
-# SPDX-FileCopyrightText: 2026 The lift monitor authors
-# SPDX-License-Identifier: Apache-2.0
-"""Plans of lifts in space: postures, feet, nearest lifts."""
