@@ -15,7 +15,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Final, TypeVar
+from typing import Final
 
 import numpy as np
 from bags.simulate.group import lifting_task, simulated_lift, study_group
@@ -27,15 +27,13 @@ from lift_predictor.core.models.sagittal.lift_model import COLD, SagittalModel
 from lift_predictor.core.models.sagittal.task import SagittalTask
 from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.problem.maximum_weight import Weighting, heaviest_box
-from lift_predictor.core.problem.run import SolverRun, Start
+from lift_predictor.core.problem.run import Start
 from lift_predictor.core.problem.task import Box
 from lift_predictor.core.problem.task_solver import TaskSolver
-from lift_predictor.core.solvers.compiled import build_programme
-from lift_predictor.core.solvers.ipopt import LiftSolver
+from lift_predictor.core.solvers.ipopt import IpoptSolver
+from lift_predictor.core.solvers.solution import Solution
 from lift_predictor.core.solvers.solve import solve
-from lift_predictor.core.solvers.solver_run import SolverRun as ReferenceRun
 
-Run = TypeVar('Run', SolverRun, ReferenceRun)
 REPEATS: Final = 25
 SUBJECT: Final = 'thesis_ch4'
 LIFTS: Final = {'2d_fixed_7kg': 'symmetric_7kg', '2d_fixed_12kg': 'symmetric_12kg'}
@@ -48,7 +46,7 @@ WARM_SHIFT: Final = 0.002
 """From one warm solve to the next the mass changes by at most 50 g, the end place by 2 mm."""
 
 
-def timed(run: Callable[[], Run], repeats: int) -> tuple[Run, float, float]:
+def timed(run: Callable[[], Solution], repeats: int) -> tuple[Solution, float, float]:
     """Median wall and processor time [ms] of repeated solves, and the last result."""
     wall, processor = [], []
     for _ in range(repeats):
@@ -56,7 +54,7 @@ def timed(run: Callable[[], Run], repeats: int) -> tuple[Run, float, float]:
         result = run()
         wall.append(time.perf_counter() - begin)
         processor.append(time.process_time() - begin_cpu)
-    if not result.converged:
+    if not result.ok:
         raise RuntimeError(f'the solve that is timed did not converge: {result.status}')
     return result, 1e3 * float(np.median(wall)), 1e3 * float(np.median(processor))
 
@@ -64,18 +62,18 @@ def timed(run: Callable[[], Run], repeats: int) -> tuple[Run, float, float]:
 def pair(
     key: str,
     own: TaskSolver[SagittalTask],
-    referee: LiftSolver,
     task: SagittalTask,
     start: Start,
 ) -> dict[str, float]:
     """Time both solvers on one task."""
-    vector, bounds = task.parameters.pack(), task.bounds
-    mine, wall, cpu = timed(lambda: own.run(task, start), REPEATS)
-    other, ipopt_wall, ipopt_cpu = timed(lambda: referee.solve(vector, bounds, start), REPEATS)
+    nlp, x0 = own.model.nlp(task), own.model.variables(task, start)
+    reference = IpoptSolver(nlp, x0)
+    mine, wall, cpu = timed(lambda: own.run(task, start).solution, REPEATS)
+    other, ipopt_wall, ipopt_cpu = timed(lambda: reference.solve(nlp, x0), REPEATS)
     if abs(mine.objective - other.objective) > SAME * abs(other.objective):
         print(f'{key}: another minimum: {mine.objective:.6f}, IPOPT {other.objective:.6f}')
     return {
-        f'{key}_ms': wall, f'{key}_cpu_ms': cpu, f'{key}_iterations': mine.solution.iterations,
+        f'{key}_ms': wall, f'{key}_cpu_ms': cpu, f'{key}_iterations': mine.iterations,
         f'ipopt_{key}_ms': ipopt_wall, f'ipopt_{key}_cpu_ms': ipopt_cpu,
         f'ipopt_{key}_iterations': other.iterations,
     }  # fmt: skip
@@ -89,15 +87,14 @@ def changed(bounds: LiftBounds, step: int, rng: np.random.Generator) -> LiftBoun
     return replace(bounds, box_mass=mass, hand=hand)
 
 
-def warm(
-    own: TaskSolver[SagittalTask], referee: LiftSolver, task: SagittalTask, start: Start
-) -> dict[str, float]:
+def warm(own: TaskSolver[SagittalTask], task: SagittalTask, start: Start) -> dict[str, float]:
     """Rate of solves that begin with the solution of the task before."""
-    rng, vector, bounds = np.random.default_rng(1), task.parameters.pack(), task.bounds
+    rng, bounds = np.random.default_rng(1), task.bounds
     x0 = np.append(start.control, start.box_mass)
     solution = solve(own.model.nlp(task), x0, COLD)
     wall, cpu, other, failed = [], [], [], 0
-    last = referee.solve(vector, bounds, start)
+    reference = IpoptSolver(own.model.nlp(task), x0)
+    last = reference.solve(own.model.nlp(task), x0)
     for step in range(WARM_STEPS):
         bounds = changed(bounds, step, rng)
         task = replace(task, bounds=bounds)
@@ -106,9 +103,9 @@ def warm(
         cpu.append(time.process_time() - begin_cpu)
         wall.append(time.perf_counter() - begin)
         begin = time.perf_counter()
-        last = referee.solve(vector, bounds, last.as_start())
+        last = reference.solve(own.model.nlp(task), last.x)
         other.append(time.perf_counter() - begin)
-        failed += not (solution.ok and last.converged)
+        failed += not (solution.ok and last.ok)
     if failed:
         raise RuntimeError(f'{failed} of {WARM_STEPS} warm solves did not converge')
     return {
@@ -131,15 +128,14 @@ def run() -> Mapping[str, float]:
     predictor = LiftPredictor()
     own = predictor.sagittal
     model = SagittalModel()
-    referee = LiftSolver(build_programme(model.grid), 60.0)
     result: dict[str, float] = {}
     for key, name in LIFTS.items():
         described = lifting_task(name)
         box = Box(described.box_mass, described.box_size[0])
         task = model.recorded_task(subject, simulated_lift(subject, described), box)
         start = smooth_step(task, model)
-        result |= pair(key, own, referee, task, start)
-    result |= warm(own, referee, task, start)
+        result |= pair(key, own, task, start)
+    result |= warm(own, task, start)
     man = find_man(study_group()[0], Weighting())
     task = model.maximum_weight_task(man.subject, man.lift, task_box())
     scale = heaviest_box(own, task, model.starts(task)).normalisation
@@ -149,7 +145,7 @@ def run() -> Mapping[str, float]:
     objective = np.array([weighting.effort / scale.effort, weighting.box / scale.log_weight])
     task = replace(task, parameters=replace(task.parameters, objective=objective))
     start = replace(smooth_step(task, model), box_mass=task_box().mass)
-    result |= pair('2d_max', own, referee, task, start)
+    result |= pair('2d_max', own, task, start)
     return result
 
 

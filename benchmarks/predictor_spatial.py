@@ -23,12 +23,12 @@ from typing import Any, Final
 
 import numpy as np
 from benchmarks.random_tasks import random_case
-from benchmarks.spatial_referee import Referee, Refereed
 
 from human_model.exceptions import HumanModelError
 from human_model.motion import BodyMotion, Lift
 from human_model.named_subjects import named_subject
 from human_model.report import SolveReport
+from human_model.typing import Array
 from lift_predictor.core.exceptions import LiftPredictorError
 from lift_predictor.core.models.spatial.frame import StanceFrame
 from lift_predictor.core.models.spatial.lift_model import FAR, SOLVER_OPTIONS, SpatialModel
@@ -42,12 +42,14 @@ from lift_predictor.core.problem.maximum_weight import Weighting, maximum_weight
 from lift_predictor.core.problem.run import Start
 from lift_predictor.core.problem.task import Box
 from lift_predictor.core.problem.task_solver import HOP_SPREAD, TaskSolver
+from lift_predictor.core.solvers.ipopt import IpoptSolver
 from lift_predictor.core.solvers.solution import Solution
 from lift_predictor.core.solvers.solve import solve
 
 ROOT: Final = Path(__file__).resolve().parents[1]
 REPEATS: Final = 20
 IPOPT_REPEATS: Final = 1
+IPOPT_ITERATIONS: Final = 400
 WARM_STEPS: Final = 30
 WARM_MASS: Final = 0.05
 WARM_SHIFT: Final = 0.002
@@ -96,6 +98,26 @@ def single(
     return solve(nlp, x0, options, warm)
 
 
+def reference(
+    model: SpatialModel, task: SpatialTask, x0: Array, barrier: float | None = None,
+    warm: bool = False,
+) -> IpoptSolver:  # fmt: skip
+    """Return IPOPT for a task with the first barrier parameter of our method.
+
+    Warm: it starts from multipliers, as near to the bounds as our method does.
+    """
+    settings: dict[str, Any] = {
+        'max_iter': IPOPT_ITERATIONS, 'mu_init': barrier or SOLVER_OPTIONS.barrier,
+    }  # fmt: skip
+    if warm:
+        push = SOLVER_OPTIONS.warm_bound_push
+        settings |= {'warm_start_init_point': 'yes', 'mu_init': SOLVER_OPTIONS.warm_barrier}
+        settings |= {
+            f'warm_start_{name}_push': push for name in ('bound', 'slack_bound', 'mult_bound')
+        }
+    return IpoptSolver(model.nlp(task), x0, settings)
+
+
 def pair(key: str, model: SpatialModel, task: SpatialTask, start: Start) -> dict[str, float]:
     """Time both solvers on one task."""
     wall, cpu, x0 = [], [], model.variables(task, start)
@@ -106,12 +128,12 @@ def pair(key: str, model: SpatialModel, task: SpatialTask, start: Start) -> dict
         wall.append(time.perf_counter() - begin)
     if not mine.ok:
         raise RuntimeError(f'{key}: {mine.status} {mine.violated}')
-    referee, other_wall = Referee(model, task, x0, start.barrier), []
+    nlp, ipopt, other_wall = model.nlp(task), reference(model, task, x0, start.barrier), []
     for _ in range(IPOPT_REPEATS):
         begin = time.perf_counter()
-        other = referee.solve(x0)
+        other = ipopt.solve(nlp, x0)
         other_wall.append(time.perf_counter() - begin)
-    if not other.solved:
+    if not other.ok:
         print(f'{key}: IPOPT did not converge')
     elif abs(mine.objective - other.objective) > 1e-3 * abs(other.objective):
         print(f'{key}: another minimum: {mine.objective:.6f}, IPOPT {other.objective:.6f}')
@@ -119,7 +141,8 @@ def pair(key: str, model: SpatialModel, task: SpatialTask, start: Start) -> dict
         f'{key}_s': float(np.median(wall)), f'{key}_cpu_s': float(np.median(cpu)),
         f'{key}_iterations': mine.iterations, f'{key}_objective': mine.objective,
         f'ipopt_{key}_s': float(np.median(other_wall)),
-        f'ipopt_{key}_iterations': other.iterations, f'ipopt_{key}_objective': other.objective,
+        f'ipopt_{key}_iterations': other.iterations,
+        f'ipopt_{key}_objective': other.objective if other.ok else float('nan'),
     }  # fmt: skip
 
 
@@ -148,14 +171,14 @@ def warm(model: SpatialModel, task: SpatialTask, x0: Any) -> dict[str, float]:
         if not solution.ok:
             raise RuntimeError(f'warm solve {len(wall)} of {WARM_STEPS}: {solution.status}')
     # From the same solution of the same task on, with IPOPT's own multipliers of it.
-    referee = Referee(model, first, first_x, warm=True)
-    other: Refereed = Referee(model, first, first_x).solve(first_x)
+    ipopt = reference(model, first, first_x, warm=True)
+    other = reference(model, first, first_x).solve(model.nlp(first), first_x)
     other_wall = []
     for task in tasks[:IPOPT_WARM_STEPS]:
         begin = time.perf_counter()
-        other = referee.solve(other.x, task, other)
+        other = ipopt.solve(model.nlp(task), other.x, other)
         other_wall.append(time.perf_counter() - begin)
-        if not other.solved:
+        if not other.ok:
             raise RuntimeError(f'IPOPT: warm solve {len(other_wall)} did not converge')
     return {
         '3d_warm_hz': 1.0 / float(np.median(wall)), '3d_warm_cpu_hz': 1.0 / float(np.median(cpu)),
@@ -240,8 +263,8 @@ def random_lifts(
         excess.append(mine / best - 1.0)
         if k < refereed:
             x0 = model.variables(task, starts[0])
-            answer = Referee(model, task, x0).solve(x0).objective
-            excess_ipopt.append(mine / answer - 1.0)
+            answer = reference(model, task, x0).solve(model.nlp(task), x0)
+            excess_ipopt.append(mine / answer.objective - 1.0 if answer.ok else float('nan'))
     return {
         'random3d_solved': solved, 'random3d_tasks': count, 'dense_grid_violations': violations,
         'random3d_s': float(np.median(wall)),

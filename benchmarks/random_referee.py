@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The best of twenty IPOPT runs on one sagittal task, kept on disk: a killed benchmark goes on.
 
-A record is found again by a hash of everything that decides it: objective and rows of the
-programme at the starts, the bounds, and IPOPT's settings. A change of our own solver leaves it
+A record is found again by a hash of everything that decides it: objective and constraints of the
+problem at the starts, the bounds, and IPOPT's settings. A change of our own solver leaves it
 valid; a change of the model or of the tasks does not.
 """
 
@@ -23,9 +23,8 @@ from benchmarks.solved_lifts import random_starts
 
 from lift_predictor.core.models.sagittal.lift_model import SagittalModel
 from lift_predictor.core.models.sagittal.task import SagittalTask
-from lift_predictor.core.problem.run import Start
-from lift_predictor.core.solvers.compiled import build_programme
-from lift_predictor.core.solvers.ipopt import LiftSolver
+from lift_predictor.core.problem.run import FEASIBILITY_TOLERANCE, Start
+from lift_predictor.core.solvers.ipopt import IpoptSolver
 
 N_STARTS: Final = 20
 MAX_ITERATIONS: Final = 500
@@ -38,7 +37,7 @@ SETTINGS: Final[dict[str, Any]] = {
     'mumps_scaling': 0,
 }
 """IPOPT's own options, found on three tasks: with the adaptive barrier more random starts end in
-a minimum, and in half the time; the programme has its scaling already."""
+a minimum, and in half the time; the problem has its scaling already."""
 STORE: Final = Path(__file__).resolve().parents[1] / '.cache' / 'benchmarks' / 'ipopt_random.jsonl'
 
 
@@ -86,7 +85,6 @@ class RefereeStore:
     def __init__(self, model: SagittalModel, path: Path = STORE) -> None:
         self.path = path
         self._model = model
-        self._solver: LiftSolver | None = None
         self._known: dict[str, Referee] = {}
         if path.exists():
             for line in path.read_text(encoding='utf-8').splitlines():
@@ -95,20 +93,19 @@ class RefereeStore:
 
     def find(self, number: int, task: SagittalTask) -> Referee:
         """Return the record of a task; make it and append it to the file if there is none."""
-        grid, parameters, bounds = self._model.grid, task.parameters.pack(), task.bounds
-        starts = random_starts(bounds, grid, N_STARTS, number)
+        starts = random_starts(task.bounds, self._model.grid, N_STARTS, number)
         key = self._key(task, starts)
         if key in self._known:
             return self._known[key]
-        if self._solver is None:
-            programme = build_programme(grid)
-            self._solver = LiftSolver(programme, WALL_LIMIT, MAX_ITERATIONS, SETTINGS)
         begin = time.process_time()
-        runs = self._solver.solve_all(parameters, bounds, starts)
+        nlp, first = self._model.nlp(task), self._model.variables(task, starts[0])
+        limits = {'max_iter': MAX_ITERATIONS, 'max_wall_time': WALL_LIMIT}
+        solver = IpoptSolver(nlp, first, SETTINGS | limits)
+        runs = [solver.solve(nlp, self._model.variables(task, start)) for start in starts]
         record = Referee(
             key,
             number,
-            sorted(run.objective for run in runs if run.converged),
+            sorted(r.objective for r in runs if r.ok and r.primal <= FEASIBILITY_TOLERANCE),
             sum(run.iterations for run in runs),
             time.process_time() - begin,
         )

@@ -13,19 +13,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lift_predictor.core.models.sagittal.grid import SagittalGrid
+from lift_predictor.core.models.sagittal.assembly import sagittal_library
+from lift_predictor.core.models.sagittal.evaluation import evaluate
 from lift_predictor.core.models.sagittal.parameters import LiftParameters
-from lift_predictor.core.solvers import cache, compiled
 from lift_predictor.core.solvers.cache import find_compiler
-from lift_predictor.core.solvers.compiled import build_programme, content_hash
-
-GRID = SagittalGrid(5, 5)
-
 
 BUILD = """
-from lift_predictor.core.solvers.compiled import build_programme
-from lift_predictor.core.models.sagittal.grid import SagittalGrid
-print(build_programme(SagittalGrid(5, 5)).backend)
+from lift_predictor.core.models.sagittal.assembly import sagittal_library
+print(sagittal_library().backend)
 """
 
 
@@ -45,26 +40,22 @@ def test_two_processes_build_one_library_with_the_numbers_of_the_virtual_machine
     assert len(list(tmp_path.glob('*.so'))) == 1
     assert not [path for path in tmp_path.iterdir() if path.is_dir()], 'scratch folder left behind'
 
-    fast = build_programme(GRID)
+    fast = sagittal_library()
     assert fast.backend == 'compiled functions from the cache'
-    assert fast.library is not None
+    assert fast.compiled is not None
     monkeypatch.setenv('CC', str(tmp_path / 'no-such-compiler'))
-    slow = build_programme(GRID)
-    x = np.random.default_rng(1).uniform(0.1, 0.6, GRID.n_variables)
-    for name in ('nlp_grad_f', 'nlp_jac_g'):
-        for a, b in zip(
-            fast.functions[name](x, parameters.pack()),
-            slow.functions[name](x, parameters.pack()),
-            strict=True,
-        ):
-            np.testing.assert_allclose(np.asarray(a), np.asarray(b), rtol=1e-9, atol=1e-9)
+    slow = sagittal_library()
+    motion = np.random.default_rng(1).uniform(0.1, 0.6, (3, 4, 6))
+    one, two = (evaluate(library, *motion, parameters) for library in (fast, slow))
+    for name in ('torque', 'constraints', 'effort'):
+        np.testing.assert_allclose(getattr(one, name), getattr(two, name), rtol=1e-9, atol=1e-9)
 
 
 def test_machine_without_compiler_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv('CC', '/no/such/compiler')
-    programme = build_programme(GRID)
-    assert programme.library is None
-    assert programme.backend == (
+    library = sagittal_library()
+    assert library.compiled is None
+    assert library.backend == (
         "functions run in CasADi's virtual machine: no C compiler was found"
     )
 
@@ -77,9 +68,9 @@ def test_compiler_that_fails_is_quoted(monkeypatch: pytest.MonkeyPatch, tmp_path
     broken.chmod(broken.stat().st_mode | stat.S_IXUSR)
     monkeypatch.setenv('CC', str(broken))
     monkeypatch.setenv('LIFT_CACHE', str(tmp_path / 'cache'))
-    programme = build_programme(GRID)
-    assert programme.library is None
-    assert 'compiling failed: disk quota exceeded' in programme.backend
+    library = sagittal_library()
+    assert library.compiled is None
+    assert 'compiling failed: disk quota exceeded' in library.backend
     assert not list((tmp_path / 'cache').glob('*.so'))
 
 
@@ -90,22 +81,6 @@ def test_cache_that_cannot_be_written_is_named(
     monkeypatch.setenv('LIFT_CACHE', str(tmp_path / 'file' / 'below'))
     if find_compiler() is None:
         pytest.skip('no C compiler on this machine')
-    programme = build_programme(GRID)
-    assert programme.library is None
-    assert str(tmp_path / 'file') in programme.backend
-
-
-def test_hash_depends_on_everything_that_goes_in(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    compiler = tmp_path / 'cc'
-    compiler.write_text('#!/bin/sh\necho one\n')
-    compiler.chmod(0o755)
-    first = content_hash(GRID, str(compiler))
-    assert content_hash(GRID, str(compiler)) == first
-    assert content_hash(SagittalGrid(5, 9), str(compiler)) != first
-    monkeypatch.setattr(compiled, 'FLAGS', ('-O0',))
-    assert content_hash(GRID, str(compiler)) != first
-    monkeypatch.undo()
-    monkeypatch.setattr(cache, 'source_hash', lambda *sources: 'other sources')
-    assert content_hash(GRID, str(compiler)) != first
+    library = sagittal_library()
+    assert library.compiled is None
+    assert str(tmp_path / 'file') in library.backend

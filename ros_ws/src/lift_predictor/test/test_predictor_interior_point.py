@@ -13,6 +13,7 @@ import pytest
 
 from human_model.typing import Array
 from lift_predictor.core.solvers.interior_point import solve
+from lift_predictor.core.solvers.ipopt import IpoptSolver
 from lift_predictor.core.solvers.solution import InteriorPointOptions, Status
 
 INF = np.inf
@@ -81,21 +82,25 @@ class SymbolicPoint:
         self._problem, self._x = problem, np.array(x)
         f, g, gradient, jacobian = problem._first(x)
         self.objective, self.g = float(f), np.asarray(g).ravel()
-        self.gradient, self.jacobian = np.asarray(gradient).ravel(), np.asarray(jacobian)
-        self.equality = self.jacobian[problem.g_lower == problem.g_upper]
+        self.gradient, self._jacobian = np.asarray(gradient).ravel(), np.asarray(jacobian)
+        self.equality = self._jacobian[problem.g_lower == problem.g_upper]
 
     def times(self, step: Array) -> Array:
         """Jacobian times a step."""
-        return np.asarray(self.jacobian @ step)
+        return np.asarray(self._jacobian @ step)
 
     def transposed(self, multiplier: Array) -> Array:
         """Transposed Jacobian times multipliers."""
-        return np.asarray(self.jacobian.T @ multiplier)
+        return np.asarray(self._jacobian.T @ multiplier)
+
+    def jacobian(self) -> Array:
+        """Dense Jacobian."""
+        return self._jacobian
 
     def condensed(self, sigma: float, multiplier: Array, weight: Array) -> Array:
         """Hessian of the Lagrangian and weighted squares of the constraints."""
         hessian = self._problem.hessian(self._x, sigma, multiplier)
-        return np.asarray(hessian + (self.jacobian.T * weight) @ self.jacobian)
+        return np.asarray(hessian + (self._jacobian.T * weight) @ self._jacobian)
 
 
 def free(n: int) -> tuple[list[float], list[float]]:
@@ -213,6 +218,17 @@ def published(name: str) -> tuple[SymbolicNlp, np.ndarray, float]:
 
 
 @pytest.mark.parametrize('name', PROBLEMS)
+def test_ipopt_finds_the_same_minimum(name: str) -> None:
+    problem, x0, optimum = published(name)
+    solution = IpoptSolver(problem, x0).solve(problem, x0)
+    assert solution.status is Status.OPTIMAL
+    assert solution.objective == pytest.approx(optimum, rel=2e-7, abs=2e-7)
+    assert solution.primal < 1e-6
+    assert solution.dual < 1e-5
+    assert solution.complementarity < 1e-6
+
+
+@pytest.mark.parametrize('name', PROBLEMS)
 def test_published_minimum(name: str) -> None:
     problem, x0, optimum = published(name)
     solution = solve(problem, x0)
@@ -223,7 +239,7 @@ def test_published_minimum(name: str) -> None:
     assert solution.complementarity < 1e-6
     assert solution.iterations < 60
     point = problem.linearise(solution.x)
-    stationarity = point.gradient + point.jacobian.T @ solution.lam_g + solution.lam_x
+    stationarity = point.gradient + point.jacobian().T @ solution.lam_g + solution.lam_x
     np.testing.assert_allclose(stationarity, 0.0, atol=1e-5)
 
 

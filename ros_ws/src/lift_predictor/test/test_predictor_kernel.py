@@ -19,7 +19,6 @@ from lift_predictor.core.models.sagittal.assembly import (
     sagittal_nlp,
 )
 from lift_predictor.core.models.sagittal.grid import LiftBounds, SagittalGrid
-from lift_predictor.core.models.sagittal.nlp import programme_functions
 from lift_predictor.core.models.sagittal.parameters import LiftParameters
 from lift_predictor.core.solvers import cache, library
 from lift_predictor.core.solvers.layout import Channel, Group
@@ -119,30 +118,27 @@ def bounds(grid: SagittalGrid, mass: float) -> LiftBounds:
 
 
 @pytest.mark.parametrize('grid', GRIDS, ids=str)
-def test_sagittal_nlp_is_the_one_of_ipopt(
+def test_operators_of_the_sagittal_nlp_are_those_of_its_matrices(
     sagittal: NodeLibrary, parameters: LiftParameters, grid: SagittalGrid
 ) -> None:
     parameters = replace(parameters, objective=np.array([0.4, 0.8]))
     programme = sagittal_nlp(
         sagittal_assembler(sagittal, grid), grid, parameters.pack(), bounds(grid, 7.0)
     )
-    functions = {function.name(): function for function in programme_functions(grid)}
     rng = np.random.default_rng(3)
     x = np.append(rng.uniform(0.1, 0.7, grid.n_splined), 7.0)
-    p, m = parameters.pack(), len(grid.constraint_names)
-    f, gradient = functions['nlp_grad_f'](x, p)
-    g, jacobian = (np.asarray(value) for value in functions['nlp_jac_g'](x, p))
+    m = len(grid.constraint_names)
     point = programme.linearise(x)
-    assert point.objective == pytest.approx(float(f), rel=1e-12)
-    np.testing.assert_allclose(point.g, g.ravel(), rtol=1e-11, atol=1e-11)
-    gradient = np.asarray(gradient).ravel()
-    np.testing.assert_allclose(point.gradient, gradient, rtol=1e-10, atol=1e-11)
+    f, g = programme.values(x)
+    assert point.objective == pytest.approx(f, rel=1e-12)
+    np.testing.assert_allclose(point.g, g, rtol=1e-11, atol=1e-11)
+    jacobian = point.jacobian()
     step, y, weight = rng.normal(size=grid.n_variables), rng.normal(size=m), rng.uniform(size=m)
     np.testing.assert_allclose(point.times(step), jacobian @ step, rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(point.transposed(y), jacobian.T @ y, rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(point.equality, jacobian[programme.equal], atol=1e-10)
-    upper = np.asarray(functions['nlp_hess_l'](x, p, 0.7, y))
-    expected = np.triu(upper) + np.triu(upper, 1).T + (jacobian.T * weight) @ jacobian
+    hessian = point.condensed(0.7, y, np.zeros(m))
+    expected = hessian + (jacobian.T * weight) @ jacobian
     matrix = point.condensed(0.7, y, weight)
     np.testing.assert_allclose(matrix, expected, rtol=1e-9, atol=1e-8 * np.abs(expected).max())
 

@@ -22,10 +22,8 @@ from lift_predictor.core.problem.maximum_weight import (
     heaviest_box,
     maximum_weight,
 )
-from lift_predictor.core.problem.run import Start
+from lift_predictor.core.problem.run import Start, best_first
 from lift_predictor.core.problem.task import Box
-from lift_predictor.core.solvers.compiled import build_programme
-from lift_predictor.core.solvers.ipopt import LiftSolver
 
 DEPTH = 0.238
 BOX = Box(7.0, DEPTH)
@@ -84,13 +82,13 @@ def test_a_little_less_can_be_lifted_and_a_little_more_cannot(solve, predictor, 
     task, starts = open_task
     # Before margins between the nodes were asked for: the bounds of these solves have none.
     heaviest = solve(0.0).prediction.runs[-len(starts)]
-    solver = LiftSolver(build_programme(predictor.sagittal.model.grid), 20.0)
     start = heaviest.as_start()
     found = []
     for factor in (0.99, 1.01):
         mass = np.full(2, factor * heaviest.box_mass)
-        bounds = replace(task.bounds, box_mass=mass)
-        found.append(solver.solve(task.parameters.pack(), bounds, start).converged)
+        heavier = replace(task, bounds=replace(task.bounds, box_mass=mass))
+        (run,) = predictor.sagittal.reference_runs(heavier, [start])
+        found.append(run.converged)
     assert found == [True, False]
 
 
@@ -124,9 +122,9 @@ def test_objective_is_equation_2_11(solve) -> None:
 
 def test_the_tie_break_costs_next_to_nothing(predictor, open_task, solve) -> None:
     task, starts = open_task
-    vector = replace(task.parameters, objective=np.array([0.0, 1.0])).pack()
-    referee = LiftSolver(build_programme(predictor.sagittal.model.grid), 20.0)
-    pure = referee.solve_all(vector, task.bounds, starts)[0]
+    parameters = replace(task.parameters, objective=np.array([0.0, 1.0]))
+    runs = predictor.sagittal.reference_runs(replace(task, parameters=parameters), starts)
+    pure = best_first(list(runs))[0]
     assert pure.converged
     first = solve(0.0).prediction.runs[-len(starts)]
     assert REGULARISATION > 0.0
@@ -139,14 +137,12 @@ def test_random_starts_find_no_heavier_box(predictor, open_task, solve) -> None:
     person = task.person
     rng = np.random.default_rng(3)
     shape = (predictor.sagittal.model.grid.spline.n_free, 6)
-    vector = replace(task.parameters, objective=np.array([REGULARISATION, 1.0])).pack()
-    solver = LiftSolver(build_programme(predictor.sagittal.model.grid), 20.0)
-    masses = []
-    for k in range(5):
-        control = rng.uniform(person.angle_lower, person.angle_upper, shape)
-        run = solver.solve(vector, task.bounds, Start(f'random {k}', control, 20.0))
-        if run.converged:
-            masses.append(run.box_mass)
+    parameters = replace(task.parameters, objective=np.array([REGULARISATION, 1.0]))
+    task = replace(task, parameters=parameters)
+    low, high = person.angle_lower, person.angle_upper
+    guesses = [Start(f'random {k}', rng.uniform(low, high, shape), 20.0) for k in range(5)]
+    runs = predictor.sagittal.reference_runs(task, guesses)
+    masses = [run.box_mass for run in runs if run.converged]
     assert masses
     first = solve(0.0).prediction.runs[-len(starts)]
     assert max(masses) <= first.box_mass * 1.001

@@ -18,12 +18,10 @@ from lift_predictor.core.models.sagittal.assembly import sagittal_library
 from lift_predictor.core.models.sagittal.evaluation import SagittalLoads, evaluate
 from lift_predictor.core.models.sagittal.grid import CENTRES, HAND_SCALE, NODE_CONSTRAINTS
 from lift_predictor.core.models.sagittal.kinematics import chain_positions, pelvis_motion
-from lift_predictor.core.models.sagittal.node_functions import node_functions
 from lift_predictor.core.models.sagittal.parameters import JOINTS, LiftParameters
 from lift_predictor.core.models.sagittal.person import Person
 
 N = 12
-FUNCTIONS = node_functions()
 LIBRARY = sagittal_library()
 
 

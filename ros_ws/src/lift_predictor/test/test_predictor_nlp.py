@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Derivatives of the programme against finite differences, and its rows against the task."""
+"""Derivatives of the sagittal NLP against finite differences; its constraints and the task."""
 
 from __future__ import annotations
 
@@ -9,7 +9,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from lift_predictor.core.models.sagittal.assembly import sagittal_library
+from lift_predictor.core.models.sagittal.assembly import (
+    sagittal_assembler,
+    sagittal_library,
+    sagittal_nlp,
+)
 from lift_predictor.core.models.sagittal.evaluation import evaluate
 from lift_predictor.core.models.sagittal.grid import (
     HAND_SCALE,
@@ -17,12 +21,11 @@ from lift_predictor.core.models.sagittal.grid import (
     LiftBounds,
     SagittalGrid,
 )
-from lift_predictor.core.models.sagittal.nlp import programme_functions
 from lift_predictor.core.models.sagittal.parameters import LiftParameters
+from lift_predictor.core.solvers.spline_nlp import SplineNlp
 
 GRID = SagittalGrid(6, 7)
 MASS = np.array([7.0, 30.0])
-FUNCTIONS = {function.name(): function for function in programme_functions(GRID)}
 LIBRARY = sagittal_library()
 
 
@@ -39,69 +42,65 @@ def vector(request, parameters: LiftParameters) -> np.ndarray:
     return replace(parameters, objective=np.array(request.param)).pack()
 
 
-def dense(value) -> np.ndarray:
-    return np.asarray(value)
+@pytest.fixture
+def nlp(vector: np.ndarray) -> SplineNlp:
+    angle, posture = np.full(6, 3.0), np.full((3, 6), 3.0)
+    bounds = LiftBounds(-angle, angle, -posture, posture, np.ones((2, 2)), MASS)
+    return sagittal_nlp(sagittal_assembler(LIBRARY, GRID), GRID, vector, bounds)
 
 
-def test_gradient(point: np.ndarray, vector: np.ndarray) -> None:
-    f, gradient = FUNCTIONS['nlp_grad_f'](point, vector)
-    assert float(f) == pytest.approx(float(FUNCTIONS['nlp_f'](point, vector)), rel=1e-14)
+def test_gradient(point: np.ndarray, nlp: SplineNlp) -> None:
+    at = nlp.linearise(point)
+    assert at.objective == pytest.approx(nlp.values(point)[0], rel=1e-14)
     h = 1e-6
-    for i in range(GRID.n_variables):
-        step = h * np.eye(GRID.n_variables)[i]
-        change = FUNCTIONS['nlp_f'](point + step, vector) - FUNCTIONS['nlp_f'](
-            point - step, vector
-        )
-        assert float(gradient[i]) == pytest.approx(float(change) / (2 * h), rel=1e-5, abs=1e-5)
+    for i, step in enumerate(h * np.eye(nlp.n)):
+        change = nlp.values(point + step)[0] - nlp.values(point - step)[0]
+        assert at.gradient[i] == pytest.approx(change / (2 * h), rel=1e-5, abs=1e-5)
 
 
-def test_jacobian(point: np.ndarray, vector: np.ndarray) -> None:
-    g, jacobian = (dense(value) for value in FUNCTIONS['nlp_jac_g'](point, vector))
-    assert g.shape == (len(GRID.constraint_names), 1)
+def test_jacobian(point: np.ndarray, nlp: SplineNlp) -> None:
+    jacobian = nlp.linearise(point).jacobian()
+    assert jacobian.shape == (len(GRID.constraint_names), nlp.n)
     h = 1e-6
-    for i in range(GRID.n_variables):
-        step = h * np.eye(GRID.n_variables)[i]
-        high, low = (dense(FUNCTIONS['nlp_g'](point + sign * step, vector)) for sign in (1, -1))
-        np.testing.assert_allclose(
-            jacobian[:, i], ((high - low) / (2 * h))[:, 0], rtol=2e-5, atol=2e-5
-        )
+    for i, step in enumerate(h * np.eye(nlp.n)):
+        change = nlp.values(point + step)[1] - nlp.values(point - step)[1]
+        np.testing.assert_allclose(jacobian[:, i], change / (2 * h), rtol=2e-5, atol=2e-5)
 
 
-def test_hessian(point: np.ndarray, vector: np.ndarray) -> None:
+def test_hessian(point: np.ndarray, nlp: SplineNlp) -> None:
     rng = np.random.default_rng(2)
     sigma, multiplier = 0.7, rng.normal(size=len(GRID.constraint_names))
-    hessian = dense(FUNCTIONS['nlp_hess_l'](point, vector, sigma, multiplier))
-    assert np.all(np.tril(hessian, -1) == 0.0)
-    full = hessian + np.triu(hessian, 1).T
+    hessian = nlp.linearise(point).condensed(sigma, multiplier, np.zeros_like(multiplier))
+    np.testing.assert_array_equal(hessian, hessian.T)
 
     def gradient(x: np.ndarray) -> np.ndarray:
-        return dense(FUNCTIONS['nlp_grad'](x, vector, sigma, multiplier)[2])[:, 0]
+        at = nlp.linearise(x)
+        return sigma * at.gradient + at.transposed(multiplier)
 
     h = 1e-6
-    for i in range(GRID.n_variables):
-        step = h * np.eye(GRID.n_variables)[i]
+    for i, step in enumerate(h * np.eye(nlp.n)):
         column = (gradient(point + step) - gradient(point - step)) / (2 * h)
-        np.testing.assert_allclose(full[:, i], column, rtol=1e-5, atol=1e-4)
+        np.testing.assert_allclose(hessian[:, i], column, rtol=1e-5, atol=1e-4)
 
 
-def test_rows_and_objective_are_those_of_the_model(
-    point: np.ndarray, vector: np.ndarray, parameters: LiftParameters
+def test_constraints_and_objective_are_those_of_the_model(
+    point: np.ndarray, nlp: SplineNlp, vector: np.ndarray, parameters: LiftParameters
 ) -> None:
     control = point[: GRID.n_splined].reshape(GRID.spline.n_free, 6)
     q, dq, ddq = GRID.spline.sample(control, GRID.times, parameters.duration)
     loads = evaluate(LIBRARY, q, dq, ddq, parameters)
-    g = dense(FUNCTIONS['nlp_g'](point, vector))[:, 0]
-    n_rows = GRID.n_nodes * len(NODE_CONSTRAINTS)
-    np.testing.assert_allclose(g[:n_rows], loads.constraints.ravel(), atol=1e-12)
-    np.testing.assert_allclose(g[n_rows : n_rows + q.size], q.ravel(), atol=1e-12)
-    hands = g[n_rows + q.size : n_rows + q.size + 4].reshape(2, 2) * HAND_SCALE
+    f, g = nlp.values(point)
+    n_node = GRID.n_nodes * len(NODE_CONSTRAINTS)
+    np.testing.assert_allclose(g[:n_node], loads.constraints.ravel(), atol=1e-12)
+    np.testing.assert_allclose(g[n_node : n_node + q.size], q.ravel(), atol=1e-12)
+    hands = g[n_node + q.size : n_node + q.size + 4].reshape(2, 2) * HAND_SCALE
     np.testing.assert_allclose(hands, loads.centres[[0, -1], -1], atol=1e-12)
     np.testing.assert_allclose(g[-6:], q[GRID.n_nodes // 2], atol=1e-12)
     simpson = np.array([1, 4, 2, 4, 2, 4, 1]) / 18.0
     effort = parameters.duration * simpson @ loads.effort
     a, b = vector[-2:]
     objective = a * effort - b * np.log(7.0 * parameters.gravity + 10.0)
-    assert float(FUNCTIONS['nlp_f'](point, vector)) == pytest.approx(objective, rel=1e-12)
+    assert f == pytest.approx(objective, rel=1e-12)
 
 
 def test_bounds_have_the_order_of_the_row_names() -> None:

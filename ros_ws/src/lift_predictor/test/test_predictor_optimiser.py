@@ -18,8 +18,6 @@ from lift_predictor.core.models.sagittal.task import SagittalTask, build_task
 from lift_predictor.core.problem.run import Start
 from lift_predictor.core.problem.task import Box
 from lift_predictor.core.problem.task_solver import TaskSolver
-from lift_predictor.core.solvers.compiled import build_programme
-from lift_predictor.core.solvers.ipopt import LiftSolver
 from lift_predictor.core.solvers.solution import InteriorPointOptions, Status
 
 GRID = SagittalGrid(7, 25)
@@ -31,22 +29,16 @@ def solver() -> TaskSolver[SagittalTask]:
 
 
 @pytest.fixture(scope='module')
-def referee() -> LiftSolver:
-    return LiftSolver(build_programme(GRID), 60.0)
-
-
-@pytest.fixture(scope='module')
 def task(make_lift, person: Person) -> Callable[[float], SagittalTask]:
     return lambda mass: build_task(person, make_lift(mass), Box(mass, 0.238))
 
 
 @pytest.mark.parametrize('mass', [7.0, 12.0])
-def test_same_minimum_and_binding_limits_as_ipopt(solver, referee, task, mass) -> None:
+def test_same_minimum_and_binding_limits_as_ipopt(solver, task, mass) -> None:
     lift = task(mass)
-    vector = lift.parameters.pack()
-    for start in make_starts(lift, GRID.spline):
+    starts = make_starts(lift, GRID.spline)
+    for start, other in zip(starts, solver.reference_runs(lift, starts), strict=True):
         own = solver.run(lift, start)
-        other = referee.solve(vector, lift.bounds, start)
         assert own.converged and other.converged
         assert own.objective == pytest.approx(other.objective, rel=1e-6)
         np.testing.assert_allclose(own.control, other.control, atol=1e-3)

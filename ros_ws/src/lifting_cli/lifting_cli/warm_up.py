@@ -43,17 +43,13 @@ def warm_analyzer() -> None:
 def warm_predictor() -> None:
     """Build the functions of both models for the default options, and both models of a person."""
     from human_model.named_subjects import named_subject, subject_names
-    from lift_predictor.core.models.sagittal.lift_model import SagittalModel
     from lift_predictor.core.predictor import LiftPredictor
-    from lift_predictor.core.solvers.compiled import build_programme
 
     predictor = LiftPredictor()
     subject = named_subject(subject_names()[0])
     # Asymmetric lifts are predicted by the spatial model.
     for solver in (predictor.sagittal, predictor.spatial):
         solver.model.person(subject)
-    # IPOPT's functions, for lifts that our own solver leaves without an answer.
-    build_programme(SagittalModel().grid)
 
 
 #: What can be warmed, longest first.

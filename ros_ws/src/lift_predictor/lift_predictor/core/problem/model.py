@@ -23,7 +23,7 @@ from lift_predictor.core.problem.run import SolverRun, Start
 from lift_predictor.core.problem.task import Box, LiftTask
 from lift_predictor.core.problem.verification import Verification
 from lift_predictor.core.solvers.library import NodeLibrary
-from lift_predictor.core.solvers.solution import InteriorPointOptions, Solution
+from lift_predictor.core.solvers.solution import InteriorPointOptions
 from lift_predictor.core.solvers.spline_nlp import SplineNlp
 
 T = TypeVar('T', bound=LiftTask)
@@ -177,10 +177,6 @@ class LiftModel(ABC, Generic[T]):
     def finer(self, factor: int) -> LiftModel[T]:
         """Return the same model with more nodes."""
         raise NotImplementedError(f'{self.name}: no finer grids')
-
-    def reference_solution(self, task: T, start: Start, time_limit: float) -> Solution:
-        """Solve by IPOPT within a time limit [s]."""
-        raise NotImplementedError(f'{self.name}: no reference solver')
 
     def displacement(self, task: T, shift: Array) -> Array:
         """Return a random displacement of control values as this task needs it."""

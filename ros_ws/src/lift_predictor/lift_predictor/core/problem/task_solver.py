@@ -169,7 +169,8 @@ class TaskSolver(Generic[T]):
                 progress(len(runs), len(starts) + basin_hops, best_objective(runs))
         unanswered = bool(runs) and all(run.status in NO_ANSWER for run in runs)
         if unanswered and self.model.method.uses_reference:
-            runs.extend(self._by_reference(task, starts, deadline))
+            for run in self.reference_runs(task, starts, deadline):
+                runs.append(replace(run, start=f'{run.start}, {REFERENCE_NOTE}'))
         return best_first(runs)
 
     def _all_starts(
@@ -190,18 +191,33 @@ class TaskSolver(Generic[T]):
         control = start.control + self.model.displacement(task, shift)
         return Start(f'basin hop {number + 1}', control, start.box_mass, start.duration)
 
-    def _by_reference(
-        self, task: T, starts: Sequence[Start], deadline: float
+    def reference_runs(
+        self, task: T, starts: Sequence[Start], deadline: float = float('inf')
     ) -> Iterator[SolverRun]:
+        """Solve a task by IPOPT from every start; none but the first begins after the deadline.
+
+        Parameters
+        ----------
+        task : LiftTask
+            Task.
+        starts : sequence of Start
+            Initial guesses.
+        deadline : float
+            On the clock of `time.perf_counter` [s].
+        """
+        # Imports CasADi, which is not needed otherwise.
+        from lift_predictor.core.solvers.ipopt import IpoptSolver
+
         nlp = self.model.nlp(task)
         for number, start in enumerate(starts):
             self.stop.check()
-            left = max(deadline - time.perf_counter(), 0.0)
-            if number and not left:
+            left = deadline - time.perf_counter()
+            if number and left <= 0.0:
                 break
-            limit = min(self.model.method.time_limit, left)
-            solution = self.model.reference_solution(task, start, limit)
-            yield self._as_run(task, nlp, f'{start.name}, {REFERENCE_NOTE}', solution)
+            limit = max(min(self.model.method.time_limit, left), 1e-3)  # must be positive
+            x0 = self.model.variables(task, start)
+            solution = IpoptSolver(nlp, x0, {'max_wall_time': limit}).solve(nlp, x0)
+            yield self._as_run(task, nlp, start.name, solution)
 
     def solve(
         self,

@@ -38,7 +38,7 @@ from lift_predictor.core.solvers.constants import (
 )
 from lift_predictor.core.solvers.line_filter import Filter
 from lift_predictor.core.solvers.newton import InertiaMemory, NewtonSystem
-from lift_predictor.core.solvers.problem import NlpProblem
+from lift_predictor.core.solvers.problem import NlpProblem, violated_constraints
 from lift_predictor.core.solvers.restoration import constraint_violation, restore
 from lift_predictor.core.solvers.scaling import ScaledNlp, ScaledPoint
 from lift_predictor.core.solvers.solution import InteriorPointOptions, Solution, Status
@@ -374,12 +374,7 @@ def _finish(solver: _Solver, status: Status) -> Solution:
     bound = -gradient
     bound[p.free] = (st.zu - st.zl)[: p.n] / p.objective_scale
     excess = np.maximum(source.g_lower - raw.g, raw.g - source.g_upper)
-    worst = np.argsort(-excess)[:3]
-    violated = tuple(
-        (source.constraint_name(int(i)), float(excess[i]))
-        for i in worst
-        if excess[i] > solver.options.infeasible_violation
-    )
+    violated = violated_constraints(source, raw.g, solver.options.infeasible_violation)
     has_l, has_u = solver.has_l, solver.has_u
     low, high = st.v - p.lower, p.upper - st.v
     scale = 1.0 / p.objective_scale

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from typing import Protocol
 
+import numpy as np
+
 from human_model.typing import Array
 
 
@@ -39,6 +41,10 @@ class Linearisation(Protocol):
 
     def transposed(self, multiplier: Array) -> Array:
         """Transposed Jacobian of all constraints times multipliers (m,): shape (n,)."""
+        ...
+
+    def jacobian(self) -> Array:
+        """Dense Jacobian of all constraints, shape (m, n), for the reference solver."""
         ...
 
     def condensed(self, sigma: float, multiplier: Array, weight: Array) -> Array:
@@ -95,3 +101,24 @@ class NlpProblem(Protocol):
     def linearise(self, x: Array) -> Linearisation:
         """First derivatives at x, and the means to get the second ones."""
         ...
+
+
+def violated_constraints(
+    problem: NlpProblem, g: Array, least: float
+) -> tuple[tuple[str, float], ...]:
+    """Return names and violations of the three most violated constraints.
+
+    Parameters
+    ----------
+    problem : NlpProblem
+        Problem with the bounds.
+    g : ndarray, shape (m,)
+        Values of the constraints.
+    least : float
+        Violations up to this one are left out.
+    """
+    excess = np.maximum(problem.g_lower - g, g - problem.g_upper)
+    worst = np.argsort(-excess)[:3]
+    return tuple(
+        (problem.constraint_name(int(i)), float(excess[i])) for i in worst if excess[i] > least
+    )

@@ -12,7 +12,7 @@ import numpy as np
 
 from human_model.typing import Array
 from lift_predictor.core.solvers.compiled_assembler import CompiledAssembler
-from lift_predictor.core.solvers.problem import NlpProblem
+from lift_predictor.core.solvers.problem import NlpProblem, violated_constraints
 from lift_predictor.core.solvers.solution import InteriorPointOptions, Solution, Status
 from lift_predictor.core.solvers.spline_nlp import SplineNlp
 
@@ -112,12 +112,7 @@ def _solve_compiled(
     violated: tuple[tuple[str, float], ...] = ()
     if status is not Status.OPTIMAL:
         g = problem.values(x)[1]
-        excess = np.maximum(problem.g_lower - g, g - problem.g_upper)
-        violated = tuple(
-            (problem.constraint_name(int(i)), float(excess[i]))
-            for i in np.argsort(-excess)[:3]
-            if excess[i] > options.infeasible_violation
-        )
+        violated = violated_constraints(problem, g, options.infeasible_violation)
     return Solution(
         status, x, result.objective, y, z, result.iterations, result.primal, result.dual,
         result.complementarity, violated, time.perf_counter() - begin,

@@ -113,9 +113,13 @@ class SplinePoint:
     """Derivatives of a `SplineNlp` at its last point."""
 
     def __init__(self, problem: SplineNlp, x: Array) -> None:
-        self._assembler = problem.assembler
+        self._assembler, self._m = problem.assembler, len(problem.g_lower)
         self.objective, self.g, self.gradient = self._assembler.first(x)
         self.equality = self._assembler.dense_rows(problem.equal)
         self.times = self._assembler.times
         self.transposed = self._assembler.transposed
         self.condensed = self._assembler.condensed
+
+    def jacobian(self) -> Array:
+        """Dense Jacobian of all constraints (m, n)."""
+        return self._assembler.dense_rows(np.arange(self._m, dtype=np.int32))

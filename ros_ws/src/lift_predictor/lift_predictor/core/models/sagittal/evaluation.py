@@ -30,11 +30,11 @@ class SagittalLoads:
     hand_force : array, shape (n, 2)
         Force of the box on both hands [N].
     constraints : array, shape (n, n_g)
-        Scaled constraints of `node_functions.NODE_CONSTRAINTS`.
+        Scaled constraints of `grid.NODE_CONSTRAINTS`.
     effort : array, shape (n,)
         Integrand of the first term of equation 2.11.
     centres : array, shape (n, 7, 2)
-        Joint centres of `node_functions.CENTRES` [m].
+        Joint centres of `grid.CENTRES` [m].
     """
 
     torque: Array

@@ -43,7 +43,7 @@ from lift_predictor.core.problem.nearest_lift import Way
 from lift_predictor.core.problem.run import SolverRun, Start
 from lift_predictor.core.problem.task import Box
 from lift_predictor.core.problem.verification import DENSITY, Verification
-from lift_predictor.core.solvers.solution import InteriorPointOptions, Solution, Status
+from lift_predictor.core.solvers.solution import InteriorPointOptions
 from lift_predictor.core.solvers.spline_nlp import SplineNlp
 from lift_predictor.core.solvers.stop import StopFlag
 
@@ -56,10 +56,6 @@ POSTURE_TOLERANCES: Final = (0.1, 0.15, 0.1)
 """Epsilon of equation 2.23 at 0, T/2 and T [rad], for the maximum weight."""
 COMPARED_JOINTS: Final = ('spine', 'shoulder', 'elbow', 'hip', 'knee', 'ankle')
 """The dissertation's names of `parameters.JOINTS`, in the same order."""
-_IPOPT: Final = {
-    'Maximum_WallTime_Exceeded': Status.TIME_LIMIT,
-    'Infeasible_Problem_Detected': Status.INFEASIBLE,
-}
 TORQUE_NAMES: Final = (*JOINTS, 'mtp_angle')
 
 
@@ -146,25 +142,6 @@ class SagittalModel(LiftModel[SagittalTask]):
         """Return the same model with more nodes."""
         grid = replace(self.grid, n_nodes=factor * (self.grid.n_nodes - 1) + 1)
         return SagittalModel(self.options, self.stop, grid)
-
-    def reference_solution(self, task: SagittalTask, start: Start, time_limit: float) -> Solution:
-        """Solve by IPOPT within a time limit [s]."""
-        # Imports CasADi, which is not needed otherwise.
-        from lift_predictor.core.solvers import solver_run
-        from lift_predictor.core.solvers.compiled import build_programme
-        from lift_predictor.core.solvers.ipopt import LiftSolver
-
-        reference = LiftSolver(build_programme(self.grid), time_limit)
-        begin = solver_run.Start(start.name, start.control, start.box_mass)
-        run = reference.solve(task.parameters.pack(), task.bounds, begin)
-        status = Status.OPTIMAL if run.converged else _IPOPT.get(run.status, Status.STUCK)
-        none = np.zeros(len(self.grid.constraint_names))
-        return Solution(
-            status, np.append(run.control, run.box_mass), run.objective, none,
-            np.zeros(self.grid.n_variables), run.iterations, run.violation, run.stationarity,
-            run.complementarity, ((run.violated, run.violation),) if run.violated else (),
-            run.solve_time,
-        )  # fmt: skip
 
     def recorded_task(
         self, subject: Subject, lift: Lift, box: Box, fraction: float = 1.0
