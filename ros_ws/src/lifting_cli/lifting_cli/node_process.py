@@ -69,8 +69,7 @@ class NodeProcess:
         code = self.process.poll()
         if code is not None:
             tail = self.log.read_text(encoding='utf-8', errors='replace')[-2000:]
-            text = f'{self.name} ended with exit code {code}; {self.log} ends:\n{tail}'
-            raise NodeDiedError(text)
+            raise NodeDiedError(self.name, code, self.log, tail)
 
     def terminate(self) -> None:
         """Ask the process to end, if it still runs."""
