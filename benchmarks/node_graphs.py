@@ -34,7 +34,7 @@ from std_srvs.srv import SetBool
 from human_model.typing import Array
 from lifting_cli.graph import Graph
 from lifting_cli.node_process import PARAMETERS, NodeProcess, discovery, start_module
-from lifting_cli.session import summarise
+from lifting_cli.recording_summary import summarise
 from lifting_node import qos
 
 ROOT: Final = Path(__file__).resolve().parents[1]

@@ -55,9 +55,9 @@ class Tracked:
 @cache
 def track(bag: Path) -> Tracked:
     """Drive the motion tracker alone, as the graph does, through a recording."""
-    from lifting_cli.offline import defaults
-    from lifting_cli.session import summarise
-    from lifting_node.conversions import subject_from_msg
+    from lifting_cli.recording_summary import summarise
+    from lifting_messages.conversions import subject_from_msg
+    from lifting_messages.parameters import defaults
     from lifting_recordings.reader import BagReader
     from motion_tracker import inputs
     from motion_tracker.core import tracked

@@ -15,7 +15,7 @@ from std_srvs.srv import Trigger
 
 from lifting_cli.graph import Graph
 from lifting_cli.node_process import discovery, node_processes, start_module
-from lifting_cli.session import summarise
+from lifting_cli.recording_summary import summarise
 from lifting_node import qos
 from lifting_recordings.reader import BagReader
 

@@ -16,8 +16,8 @@ import yaml
 
 from human_model.frames import matrix_from_quaternion
 from lifting_cli.session import RunOptions, run_online
-from lifting_node.conversions import motion_from_msg
-from lifting_node.stamps import to_seconds
+from lifting_messages.conversions import motion_from_msg
+from lifting_messages.stamps import to_seconds
 from lifting_recordings.reader import BagReader
 
 BAG = 'symmetric_7kg'

@@ -24,7 +24,7 @@ setup(
     maintainer_email='maintainers@lift-monitor.example',
     description=(
         'What the lifecycle nodes of the lift monitor share: parameters, quality of '
-        'service, message conversion and diagnostics.'
+        'service and diagnostics.'
     ),
     license='Apache-2.0',
 )

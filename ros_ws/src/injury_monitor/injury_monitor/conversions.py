@@ -5,21 +5,8 @@
 from __future__ import annotations
 
 import math
-from array import array
-from collections.abc import Sequence
-from typing import TypeAlias
 
 import numpy as np
-from lifting_interfaces.msg import AlarmEvent as AlarmEventMsg
-from lifting_interfaces.msg import (
-    JointTorques,
-    MeasuredLift,
-    MuscleAnalysis,
-    SpineLoad,
-    Subject,
-    Task,
-)
-from lifting_interfaces.msg import RiskAssessment as RiskAssessmentMsg
 
 from human_model.typing import BoolArray
 from injury_monitor.core.alarm_event import AlarmEvent
@@ -32,9 +19,10 @@ from injury_monitor.core.loads import ActivationSeries, TorqueSeries
 from injury_monitor.core.rnle_assessment import LiftEnds
 from injury_monitor.core.validation import FloatArray
 from injury_monitor.core.work import Work
-from lifting_node.stamps import to_seconds, to_stamp
+from lifting_messages.message_types import Message, make, message_type
+from lifting_messages.stamps import header, to_seconds, to_stamp
 
-Block: TypeAlias = SpineLoad | JointTorques | MuscleAnalysis
+_SPINE_LOAD = message_type('SpineLoad')
 
 _BLOCK = ('header', 'lift_id', 'source', 'time_from_start', 'status')
 #: What the monitor looks at in the analyzer's messages.
@@ -42,23 +30,28 @@ SPINE_FIELDS = (*_BLOCK, 'compression', 'anterior_shear')
 TORQUE_FIELDS = (*_BLOCK, 'joint_names', 'torque', 'torque_lower', 'torque_upper')
 ACTIVATION_FIELDS = (*_BLOCK, 'muscle_names', 'activation')
 
-_SOURCES = {SpineLoad.MEASURED: MEASURED, SpineLoad.PREDICTED: PREDICTED}
+_SOURCES = {_SPINE_LOAD.MEASURED: MEASURED, _SPINE_LOAD.PREDICTED: PREDICTED}
 
 
-def lift_source(message: Block) -> str:
+def _name(message: Message) -> str:
+    """Return the name of a message's type, without its package."""
+    return type(message).__name__.rpartition('__')[2]
+
+
+def lift_source(message: Message) -> str:
     """Return ``measured``, ``predicted`` or, for the live stream, ''."""
-    if message.source == SpineLoad.LIVE:
+    if message.source == _SPINE_LOAD.LIVE:
         return ''
     if message.source not in _SOURCES:
         raise InvalidInputError(
-            f'{type(message).__name__}.source',
+            f'{_name(message)}.source',
             message.source,
             'must be LIVE, MEASURED or PREDICTED',
         )
     return _SOURCES[message.source]
 
 
-def work_from_msg(subject: Subject, task: Task) -> Work:
+def work_from_msg(subject: Message, task: Message) -> Work:
     """Return person and task; the recording is named by the task and its stamp of entry."""
     try:
         coupling = Coupling(task.coupling)
@@ -79,14 +72,14 @@ def work_from_msg(subject: Subject, task: Task) -> Work:
     )
 
 
-def block_clock(message: Block) -> tuple[FloatArray, BoolArray]:
+def block_clock(message: Message) -> tuple[FloatArray, BoolArray]:
     """Return time [s] and solve flag of each sample of a block, both (n,)."""
     start = to_seconds(message.header.stamp)
     time = np.array([start + seconds for seconds in message.time_from_start.tolist()], np.float64)
     solved = np.array([code == 0 for code in message.status.tolist()], np.bool_)
     if time.size == 0 or solved.shape != time.shape:
         raise InvalidInputError(
-            f'{type(message).__name__}.status',
+            f'{_name(message)}.status',
             solved.size,
             f'must have one entry for each of the {time.size} samples',
         )
@@ -98,12 +91,12 @@ def rows(message: object, field: str, n: int, width: int) -> FloatArray:
     values = np.asarray(getattr(message, field), np.float64)
     if values.size != n * width:
         raise InvalidInputError(
-            f'{type(message).__name__}.{field}', values.size, f'must have {n} x {width} values'
+            f'{_name(message)}.{field}', values.size, f'must have {n} x {width} values'
         )
     return values.reshape(n, width)
 
 
-def spine_from_msg(message: SpineLoad) -> SpineSeries:
+def spine_from_msg(message: Message) -> SpineSeries:
     """Return the L5-S1 load of a block."""
     time, solved = block_clock(message)
     compression, shear = (
@@ -112,7 +105,7 @@ def spine_from_msg(message: SpineLoad) -> SpineSeries:
     return SpineSeries(time, compression, shear, solved)
 
 
-def torques_from_msg(message: JointTorques) -> TorqueSeries:
+def torques_from_msg(message: Message) -> TorqueSeries:
     """Return the joint torques of a block."""
     time, solved = block_clock(message)
     torque, lower, upper = (
@@ -122,14 +115,14 @@ def torques_from_msg(message: JointTorques) -> TorqueSeries:
     return TorqueSeries(time, tuple(message.joint_names), torque, lower, upper, solved)
 
 
-def activations_from_msg(message: MuscleAnalysis) -> ActivationSeries:
+def activations_from_msg(message: Message) -> ActivationSeries:
     """Return the muscle activations of a block."""
     time, solved = block_clock(message)
     activation = rows(message, 'activation', time.size, len(message.muscle_names))
     return ActivationSeries(time, tuple(message.muscle_names), activation, solved)
 
 
-def ends_from_msg(lift: MeasuredLift) -> LiftEnds:
+def ends_from_msg(lift: Message) -> LiftEnds:
     """Return the places of hands and ankles at the first and last sample of a lift."""
     motion = lift.motion
     names = list(motion.point_names)
@@ -156,9 +149,11 @@ def ends_from_msg(lift: MeasuredLift) -> LiftEnds:
     return LiftEnds(end(int(inside[0])), end(int(inside[-1])))
 
 
-def alarm_to_msg(event: AlarmEvent, filter_delay: float) -> AlarmEventMsg:
+def alarm_to_msg(event: AlarmEvent, filter_delay: float) -> Message:
     """Return the message of an alarm event."""
-    message = AlarmEventMsg(
+    message = make(
+        'AlarmEvent',
+        header=header(event.stamp),
         occurrence_id=event.occurrence,
         alarm_id=event.alarm,
         station=event.station,
@@ -176,7 +171,6 @@ def alarm_to_msg(event: AlarmEvent, filter_delay: float) -> AlarmEventMsg:
         historical=event.historical,
         message=event.message(),
     )
-    message.header.stamp = to_stamp(event.stamp)
     for field in ('stamp_raised', 'stamp_returned'):
         stamp = getattr(event, field)
         if not math.isnan(stamp):
@@ -184,7 +178,7 @@ def alarm_to_msg(event: AlarmEvent, filter_delay: float) -> AlarmEventMsg:
     return message
 
 
-def assessment_to_msg(result: RiskAssessment, start: float) -> RiskAssessmentMsg:
+def assessment_to_msg(result: RiskAssessment, start: float) -> Message:
     """Return the message of an assessment; ``start`` is the start of the lift [s]."""
     work, lifting = result.work, result.lifting
     equation = lifting.result()
@@ -192,7 +186,9 @@ def assessment_to_msg(result: RiskAssessment, start: float) -> RiskAssessmentMsg
     muscle, activation, _ = held.worst() if held is not None else ('', math.nan, math.nan)
     joints, measured, predicted = _torque_index(result)
     rows_ = result.criteria
-    message = RiskAssessmentMsg(
+    return make(
+        'RiskAssessment',
+        header=header(start),
         lift_id=result.lift_id,
         subject=work.subject,
         body_mass=work.body_mass,
@@ -200,17 +196,17 @@ def assessment_to_msg(result: RiskAssessment, start: float) -> RiskAssessmentMsg
         lifts_per_day=result.limits.loads_per_day,
         criterion=[row.criterion for row in rows_],
         source=[row.source for row in rows_],
-        value=_doubles([row.value for row in rows_]),
-        limit=_doubles([row.limit for row in rows_]),
-        margin=_doubles([row.margin for row in rows_]),
+        value=[row.value for row in rows_],
+        limit=[row.limit for row in rows_],
+        margin=[row.margin for row in rows_],
         unit=[row.unit for row in rows_],
         limit_source=[row.limit_source for row in rows_],
-        time_from_start=_doubles([row.time for row in rows_]),
+        time_from_start=[row.time for row in rows_],
         unnecessary_compression=result.avoidable_compression,
         unnecessary_shear=result.avoidable_shear,
         torque_index_joints=list(joints),
-        torque_index_measured=_doubles(measured),
-        torque_index_predicted=_doubles(predicted),
+        torque_index_measured=measured,
+        torque_index_predicted=predicted,
         activation_index_muscle=muscle,
         activation_index=activation,
         multipliers=[math.nan] * 6 if equation is None else list(equation.multipliers),
@@ -222,12 +218,6 @@ def assessment_to_msg(result: RiskAssessment, start: float) -> RiskAssessmentMsg
         summary=' '.join([result.summary, *(f'({note})' for note in result.notes)]),
         samples_left_out=result.samples_left_out,
     )
-    message.header.stamp = to_stamp(start)
-    return message
-
-
-def _doubles(values: Sequence[float] | FloatArray) -> array[float]:
-    return array('d', [float(value) for value in values])
 
 
 def _torque_index(result: RiskAssessment) -> tuple[tuple[str, ...], FloatArray, FloatArray]:

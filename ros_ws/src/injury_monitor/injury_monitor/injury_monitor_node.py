@@ -39,12 +39,13 @@ from injury_monitor.core.exceptions import (
 from injury_monitor.core.journal import AlarmJournal
 from injury_monitor.core.lift_parts import MEASURED, PREDICTED, LiftCollector, LiftParts
 from injury_monitor.core.monitor import InjuryMonitor
+from lifting_messages import encode
+from lifting_messages.stamps import to_seconds
 from lifting_node import qos
 from lifting_node.cdr import CdrError
 from lifting_node.message_view import viewed
 from lifting_node.pipeline_node import PipelineNode
 from lifting_node.run import run_node
-from lifting_node.stamps import to_seconds
 
 
 class InjuryMonitorNode(PipelineNode):
@@ -268,7 +269,8 @@ class InjuryMonitorNode(PipelineNode):
         if predicted is None:
             self.get_logger().warning(f'{parts.lift_id}: no predicted lift: {reason}')
         result = self.monitor.assess(measured, predicted, parts.ends, reason)
-        self._assessments.publish(conversions.assessment_to_msg(result, measured.start))
+        message = conversions.assessment_to_msg(result, measured.start)
+        self._assessments.publish(encode(message))
 
     def _announce(self, events: list[alarm_event.AlarmEvent]) -> None:
         if not events:
@@ -277,7 +279,7 @@ class InjuryMonitorNode(PipelineNode):
             self._journal.append(events)
         for event in events:
             self.get_logger().warning(event.message())
-            self._alarms.publish(conversions.alarm_to_msg(event, self.filter_delay))
+            self._alarms.publish(encode(conversions.alarm_to_msg(event, self.filter_delay)))
 
     def _acknowledge(
         self, request: AcknowledgeAlarm.Request, response: AcknowledgeAlarm.Response

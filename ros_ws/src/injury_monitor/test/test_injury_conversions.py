@@ -27,8 +27,8 @@ from injury_monitor.core.exceptions import InvalidInputError
 from injury_monitor.core.lifting_equation import Coupling
 from injury_monitor.core.loads import LiftLoads
 from injury_monitor.core.monitor import InjuryMonitor
+from lifting_messages.stamps import to_seconds, to_stamp
 from lifting_node.message_view import MessageView
-from lifting_node.stamps import to_seconds, to_stamp
 
 SUBJECT = Subject(pseudonym='P01', mass=63.5)
 TASK = Task(

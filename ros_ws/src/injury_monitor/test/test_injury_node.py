@@ -30,9 +30,9 @@ from rclpy.executors import SingleThreadedExecutor  # noqa: E402
 from rclpy.serialization import serialize_message  # noqa: E402
 
 from injury_monitor.injury_monitor_node import InjuryMonitorNode  # noqa: E402
+from lifting_messages.exceptions import ParameterError  # noqa: E402
+from lifting_messages.stamps import to_seconds, to_stamp  # noqa: E402
 from lifting_node import qos  # noqa: E402
-from lifting_node.parameters import ParameterError  # noqa: E402
-from lifting_node.stamps import to_seconds, to_stamp  # noqa: E402
 
 HIGH, HIGH_HIGH = 'l5_s1_compression_high', 'l5_s1_compression_high_high'
 PATIENCE = 20.0

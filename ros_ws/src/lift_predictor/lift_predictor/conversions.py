@@ -7,27 +7,22 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from builtin_interfaces.msg import Duration
-from lifting_interfaces.msg import LiftComparison as LiftComparisonMsg
-from lifting_interfaces.msg import PredictedLift as PredictedLiftMsg
-from lifting_interfaces.msg import Task as TaskMsg
-from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from human_model.motion import Lift
 from human_model.subject import Subject
 from lift_predictor.core.problem.comparison import LiftComparison
 from lift_predictor.core.problem.prediction import Prediction
 from lift_predictor.core.problem.task import Box
-from lifting_node.conversions import (
+from lifting_messages.conversions import (
     LABORATORY,
     MotionQuality,
-    flat,
     lift_from_msg,
     motion_to_msg,
     report_to_msg,
     subject_from_msg,
 )
-from lifting_node.stamps import to_stamp
+from lifting_messages.message_types import Message, make
+from lifting_messages.stamps import header
 
 __all__ = [
     'box_from_msg',
@@ -39,7 +34,7 @@ __all__ = [
 ]
 
 
-def box_from_msg(task: TaskMsg, mass: float) -> Box:
+def box_from_msg(task: Message, mass: float) -> Box:
     """Return what was lifted: the task's box with a given mass [kg].
 
     Raises
@@ -55,14 +50,17 @@ def box_from_msg(task: TaskMsg, mass: float) -> Box:
     return Box(mass=mass, depth=depth, start=places[0], end=places[1])
 
 
-def prediction_to_msg(
-    prediction: Prediction, lift: Lift | None, subject: Subject
-) -> PredictedLiftMsg:
+def prediction_to_msg(prediction: Prediction, lift: Lift | None, subject: Subject) -> Message:
     """Return the message of a prediction; without a solution its arrays are empty.
 
     `lift` is the recorded one that gives the stamp; None: planned, the stamps begin at 0.
     """
-    message = PredictedLiftMsg(
+    verified = {} if prediction.verification is None else prediction.verification.violation
+    message = make(
+        'PredictedLift',
+        header=header(0.0 if lift is None else lift.start, LABORATORY),
+        verified_names=list(verified),
+        verified_violation=list(verified.values()),
         lift_id=prediction.lift_id,
         subject=subject.pseudonym,
         body_mass=subject.mass,
@@ -70,62 +68,64 @@ def prediction_to_msg(
         maximum_weight=False,
         duration=prediction.duration,
         torque_names=list(prediction.torque_names),
-        torque=flat(prediction.torque),
-        torque_lower=flat(prediction.torque_lower),
-        torque_upper=flat(prediction.torque_upper),
-        zero_moment_point=flat(prediction.zmp),
+        torque=prediction.torque,
+        torque_lower=prediction.torque_lower,
+        torque_upper=prediction.torque_upper,
+        zero_moment_point=prediction.zmp,
         support_rear=float(prediction.support[0]),
         support_front=float(prediction.support[1]),
         report=report_to_msg(prediction.report),
     )
-    message.header.stamp = to_stamp(0.0 if lift is None else lift.start)
-    message.header.frame_id = LABORATORY
-    if prediction.verification is not None:
-        message.verified_names = list(prediction.verification.violation)
-        message.verified_violation = flat(list(prediction.verification.violation.values()))
     if prediction.lift is not None:
         motion = prediction.lift.motion
         message.motion = motion_to_msg(motion, MotionQuality.exact(len(motion)))
     return message
 
 
-def trajectory_to_msg(prediction: Prediction) -> JointTrajectory:
+def trajectory_to_msg(prediction: Prediction) -> Message:
     """Return the joint trajectory of a solved prediction, all coordinates of its skeleton.
 
     Efforts are the joint torques [N m]; the free pelvis has none.
     """
     assert prediction.lift is not None
     motion = prediction.lift.motion
-    message = JointTrajectory(joint_names=list(motion.coordinates))
-    message.header.stamp = to_stamp(prediction.lift.start)
-    message.header.frame_id = LABORATORY
     effort = np.zeros((len(motion), len(motion.coordinates)))
     for column, name in enumerate(prediction.torque_names):
         effort[:, motion.coordinates.index(name)] = prediction.torque[:, column]
+    points = []
     for row, time in enumerate(motion.time - motion.time[0]):
         fraction, whole = math.modf(time)
-        message.points.append(
-            JointTrajectoryPoint(
-                positions=flat(motion.position[row]),
-                velocities=flat(motion.velocity[row]),
-                accelerations=flat(motion.acceleration[row]),
-                effort=flat(effort[row]),
-                time_from_start=Duration(sec=int(whole), nanosec=round(fraction * 1e6) * 1000),
+        passed = make(
+            'builtin_interfaces/Duration', sec=int(whole), nanosec=round(fraction * 1e6) * 1000
+        )
+        points.append(
+            make(
+                'trajectory_msgs/JointTrajectoryPoint',
+                positions=motion.position[row],
+                velocities=motion.velocity[row],
+                accelerations=motion.acceleration[row],
+                effort=effort[row],
+                time_from_start=passed,
             )
         )
-    return message
+    return make(
+        'trajectory_msgs/JointTrajectory',
+        header=header(prediction.lift.start, LABORATORY),
+        joint_names=list(motion.coordinates),
+        points=points,
+    )
 
 
-def comparison_to_msg(
-    comparison: LiftComparison, prediction: Prediction, lift: Lift
-) -> LiftComparisonMsg:
+def comparison_to_msg(comparison: LiftComparison, prediction: Prediction, lift: Lift) -> Message:
     """Return the message of a comparison."""
     loads = comparison.measured
-    message = LiftComparisonMsg(
+    return make(
+        'LiftComparison',
+        header=header(lift.start, LABORATORY),
         lift_id=prediction.lift_id,
         joint_names=list(comparison.joint_names),
-        joint_rmse=flat(comparison.joint_rmse),
-        joint_pearson=flat(comparison.joint_pearson),
+        joint_rmse=comparison.joint_rmse,
+        joint_pearson=comparison.joint_pearson,
         vertical_force_rmse=comparison.vertical_force_rmse,
         vertical_force_pearson=comparison.vertical_force_pearson,
         horizontal_force_rmse=comparison.horizontal_force_rmse,
@@ -133,12 +133,9 @@ def comparison_to_msg(
         measured_effort=comparison.measured_effort,
         predicted_effort=comparison.predicted_effort,
         torque_names=list(comparison.torque_names),
-        time_from_start=flat(comparison.time),
-        torque=flat(loads.torque),
-        torque_lower=flat(loads.lower),
-        torque_upper=flat(loads.upper),
+        time_from_start=comparison.time,
+        torque=loads.torque,
+        torque_lower=loads.lower,
+        torque_upper=loads.upper,
         report=report_to_msg(prediction.report),
     )
-    message.header.stamp = to_stamp(lift.start)
-    message.header.frame_id = LABORATORY
-    return message

@@ -27,8 +27,10 @@ from lift_predictor.core.options import PredictorOptions
 from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.problem.prediction import Prediction
 from lift_predictor.plan_action import PlanAction
+from lifting_messages import encode
 from lifting_node import qos
 from lifting_node.pipeline_node import PipelineNode
+from lifting_node.ros_messages import to_ros
 from lifting_node.run import run_node
 
 KEPT_LIFTS: Final = 100
@@ -121,7 +123,9 @@ class LiftPredictorNode(PipelineNode):
             result.error_code = PredictLift.Result.CANCELLED
             result.error_message = str(error)
             return result
-        result.lift = conversions.prediction_to_msg(prediction, lift, subject)
+        result.lift = to_ros(
+            conversions.prediction_to_msg(prediction, lift, subject), PredictedLift
+        )
         if prediction.report.ok:
             handle.succeed()
         else:
@@ -162,12 +166,14 @@ class LiftPredictorNode(PipelineNode):
         prediction = self.predictor.predict(subject, lift, box)
         comparison = prediction.comparison
         self.counts['predicted' if prediction.report.ok else 'not predicted'] += 1
-        self._predicted.publish(conversions.prediction_to_msg(prediction, lift, subject))
+        self._predicted.publish(encode(conversions.prediction_to_msg(prediction, lift, subject)))
         if not prediction.report.ok or comparison is None:
             self.report_error(f'{lift.lift_id}: {prediction.report.message}')
             return
-        self._trajectory.publish(conversions.trajectory_to_msg(prediction))
-        self._comparison.publish(conversions.comparison_to_msg(comparison, prediction, lift))
+        self._trajectory.publish(encode(conversions.trajectory_to_msg(prediction)))
+        self._comparison.publish(
+            encode(conversions.comparison_to_msg(comparison, prediction, lift))
+        )
         self.get_logger().info(
             f'{lift.lift_id}: {prediction.report.message}; effort '
             f'{comparison.predicted_effort:.3g} s, recorded {comparison.measured_effort:.3g} s; '

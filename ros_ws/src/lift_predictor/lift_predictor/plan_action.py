@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable
 
 from lifting_interfaces.action import PlanLift
+from lifting_interfaces.msg import PredictedLift
 from rclpy.action import ActionServer, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.node import Node
@@ -22,6 +23,7 @@ from lift_predictor.core.planning.planned_lift import PlannedLift
 from lift_predictor.core.planning.planner import LiftPlanner
 from lift_predictor.core.planning.progress import PlanProgress
 from lift_predictor.core.planning.technique import FREE
+from lifting_node.ros_messages import to_ros
 
 
 def task_from_goal(goal: PlanLift.Goal) -> PlanTask:
@@ -101,8 +103,9 @@ class PlanAction:
             result.error_message = str(error)
             (handle.canceled if handle.is_cancel_requested else handle.abort)()
             return result
-        result.lift = conversions.prediction_to_msg(planned.prediction, None, subject)
-        result.lift.maximum_weight = task.box_mass is None
+        lift = conversions.prediction_to_msg(planned.prediction, None, subject)
+        lift.maximum_weight = task.box_mass is None
+        result.lift = to_ros(lift, PredictedLift)
         if not planned.report.ok:
             result.error_code = PlanLift.Result.NOT_SOLVED
             result.error_message = planned.report.message

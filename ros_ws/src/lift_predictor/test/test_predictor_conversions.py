@@ -65,7 +65,9 @@ def test_failed_prediction_carries_no_data(predictor, make_lift, subject) -> Non
     message = conversions.prediction_to_msg(failed, lift, subject)
     assert message.report.status == SolveReport.PREDICTOR_UNREACHABLE
     assert 'hand position' in message.report.message
-    assert not message.motion.position and not message.torque and not message.zero_moment_point
+    assert not (
+        message.motion.position.size + message.torque.size + message.zero_moment_point.size
+    )
     assert np.isnan(message.support_rear)
 
 

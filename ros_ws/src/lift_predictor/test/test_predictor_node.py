@@ -28,14 +28,15 @@ from rclpy.executors import SingleThreadedExecutor  # noqa: E402
 from trajectory_msgs.msg import JointTrajectory  # noqa: E402
 
 from lift_predictor.lift_predictor_node import LiftPredictorNode  # noqa: E402
-from lifting_node import qos  # noqa: E402
-from lifting_node.conversions import (  # noqa: E402
+from lifting_messages import encode  # noqa: E402
+from lifting_messages.conversions import (  # noqa: E402
     MotionQuality,
     lift_to_msg,
     motion_from_msg,
     subject_to_msg,
 )
-from lifting_node.parameters import ParameterError  # noqa: E402
+from lifting_messages.exceptions import ParameterError  # noqa: E402
+from lifting_node import qos  # noqa: E402
 
 PATIENCE = 60.0
 
@@ -112,11 +113,11 @@ def test_lift_that_came_before_its_subject_is_predicted_as_by_the_core(
 ) -> None:
     station.activate()
     result = outcome(7.0)
-    station.publishers['lift'].publish(lift_message(result.lift, subject))
+    station.publishers['lift'].publish(encode(lift_message(result.lift, subject)))
     station.publishers['task'].publish(task_message(7.0))
     station.until(lambda: station.node.counts['task'], 'task')
     assert not station.predicted
-    station.publishers['subject'].publish(subject_to_msg(subject, 0.0, '', 'test'))
+    station.publishers['subject'].publish(encode(subject_to_msg(subject, 0.0, '', 'test')))
     station.until(lambda: station.comparisons and station.trajectories, 'comparison')
     message = station.predicted[0]
     assert message.report.status == SolveReport.OK
@@ -133,19 +134,19 @@ def test_bad_input_is_reported_and_the_node_goes_on(station: Station, outcome, s
     good = subject_to_msg(subject, 0.0, '', 'test')
     grams = subject_to_msg(subject, 0.0, '', 'test')
     grams.mass = 63500.0
-    station.publishers['subject'].publish(grams)
+    station.publishers['subject'].publish(encode(grams))
     station.until(lambda: station.node.counts['errors'] == 1, 'refusal of the subject')
     assert 'subject.mass' in station.node.last_error
-    station.publishers['subject'].publish(good)
+    station.publishers['subject'].publish(encode(good))
     station.publishers['task'].publish(task_message(0.0))
     points = lift.motion.points.copy()
     points[:, lift.motion.point_names.index('shoulder_r'), 0] += 0.2
     turned = replace(lift, lift_id='lift_002', motion=replace(lift.motion, points=points))
-    station.publishers['lift'].publish(lift_message(turned, subject))
+    station.publishers['lift'].publish(encode(lift_message(turned, subject)))
     station.until(lambda: len(station.predicted) == 1, 'report of the asymmetric lift')
     assert station.predicted[0].report.status == SolveReport.PREDICTOR_BAD_INPUT
     assert not station.predicted[0].motion.position
-    station.publishers['lift'].publish(lift_message(lift, subject))
+    station.publishers['lift'].publish(encode(lift_message(lift, subject)))
     station.until(lambda: len(station.predicted) == 2, 'prediction after the bad lift')
     assert station.predicted[1].report.status == SolveReport.OK
     station.until(lambda: station.comparisons, 'comparison')
@@ -172,9 +173,9 @@ def test_seen_lift_is_predicted_again_with_another_load(
 ) -> None:
     station.activate()
     result = outcome(7.0)
-    station.publishers['subject'].publish(subject_to_msg(subject, 0.0, '', 'test'))
+    station.publishers['subject'].publish(encode(subject_to_msg(subject, 0.0, '', 'test')))
     station.publishers['task'].publish(task_message(7.0))
-    station.publishers['lift'].publish(lift_message(result.lift, subject))
+    station.publishers['lift'].publish(encode(lift_message(result.lift, subject)))
     station.until(lambda: station.predicted, 'prediction')
     unknown, _ = ask(station, 'lift_009', 7.0)
     assert unknown.error_code == PredictLift.Result.UNKNOWN_LIFT

@@ -21,13 +21,15 @@ from lifecycle_msgs.msg import Transition  # noqa: E402
 from lifecycle_msgs.srv import ChangeState  # noqa: E402
 from lifting_interfaces.action import PlanLift  # noqa: E402
 from lifting_interfaces.msg import SolveReport, Task  # noqa: E402
+from lifting_interfaces.msg import Subject as SubjectMsg  # noqa: E402
 from rclpy.action import ActionClient  # noqa: E402
 from rclpy.executors import SingleThreadedExecutor  # noqa: E402
 
 from human_model.subject import Subject  # noqa: E402
 from lift_predictor.core.planning.planner import LiftPlanner  # noqa: E402
 from lift_predictor.plan_action import task_from_goal  # noqa: E402
-from lifting_node.conversions import motion_from_msg, subject_to_msg  # noqa: E402
+from lifting_messages.conversions import motion_from_msg, subject_to_msg  # noqa: E402
+from lifting_node.ros_messages import to_ros  # noqa: E402
 
 PATIENCE = 120.0
 
@@ -118,7 +120,7 @@ def subject() -> Subject:
 
 def goal_for(person: Subject, **changes) -> PlanLift.Goal:
     goal = PlanLift.Goal(
-        subject=subject_to_msg(person, 0.0, '', 'test'),
+        subject=to_ros(subject_to_msg(person, 0.0, '', 'test'), SubjectMsg),
         task=Task(
             task_id='shelf', box_mass=7.0, box_size=[0.238, 0.305, 0.127],
             box_start=Point(x=0.35, y=0.0, z=0.0635), box_end=Point(x=0.55, y=0.0, z=0.9635),
@@ -164,7 +166,7 @@ def test_cancel_ends_the_work_before_it_is_done(client: Client, subject) -> None
 
 
 def test_bad_goal_is_refused_in_words_and_the_node_goes_on(client: Client, subject) -> None:
-    heavy = subject_to_msg(subject, 0.0, '', 'test')
+    heavy = to_ros(subject_to_msg(subject, 0.0, '', 'test'), SubjectMsg)
     heavy.mass = 63500.0
     for changes, words in (
         ({'subject': heavy}, 'subject.mass: 63500'),

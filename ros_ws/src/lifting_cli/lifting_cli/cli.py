@@ -177,7 +177,7 @@ def _run(options: argparse.Namespace) -> int:
         print(f'ready to play after {outcome.ready - began:.1f} s')
     began = time.monotonic()
     # Loads for long: the graph need not wait for it.
-    from lifting_cli.session import summarise
+    from lifting_cli.recording_summary import summarise
     from lifting_report.results import RunFacts, write_report
 
     facts = RunFacts(run, options.bag.name, summarise(options.bag).start, options.bag)
@@ -285,7 +285,7 @@ def _import(options: argparse.Namespace) -> int:
 
 
 def _report(options: argparse.Namespace) -> int:
-    from lifting_cli.session import summarise
+    from lifting_cli.recording_summary import summarise
     from lifting_report.results import RunFacts, write_report
 
     output = options.output or options.results.with_name('report.html')

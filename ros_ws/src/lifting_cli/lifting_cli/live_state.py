@@ -6,44 +6,29 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import TypeAlias
 
 import numpy as np
-from lifting_interfaces.msg import (
-    AlarmEvent,
-    LiftComparison,
-    LiftEvent,
-    PredictedLift,
-    RiskAssessment,
-    SpineLoad,
-    Subject,
-    Task,
-)
 
-from lifting_node.stamps import to_seconds
+from lifting_messages import Message, message_type
+from lifting_messages.stamps import to_seconds
 
-#: Messages the live view follows, by topic.
-FOLLOWED: dict[str, type] = {
-    'subject': Subject,
-    'task': Task,
-    'lift_event': LiftEvent,
-    'predicted_lift': PredictedLift,
-    'lift_comparison': LiftComparison,
-    'spine_load': SpineLoad,
-    'alarms': AlarmEvent,
-    'risk_assessment': RiskAssessment,
+#: Types of the messages the live view follows, by topic.
+FOLLOWED: dict[str, str] = {
+    'subject': 'Subject',
+    'task': 'Task',
+    'lift_event': 'LiftEvent',
+    'predicted_lift': 'PredictedLift',
+    'lift_comparison': 'LiftComparison',
+    'spine_load': 'SpineLoad',
+    'alarms': 'AlarmEvent',
+    'risk_assessment': 'RiskAssessment',
 }
 
-Message: TypeAlias = (
-    Subject
-    | Task
-    | LiftEvent
-    | PredictedLift
-    | LiftComparison
-    | SpineLoad
-    | AlarmEvent
-    | RiskAssessment
-)
+_SUBJECT = message_type('Subject')
+_LIFT_EVENT = message_type('LiftEvent')
+_SPINE_LOAD = message_type('SpineLoad')
+_ALARM_EVENT = message_type('AlarmEvent')
+_RISK_ASSESSMENT = message_type('RiskAssessment')
 
 
 class Kind(Enum):
@@ -116,9 +101,10 @@ class LiveState:
         return lines
 
     def _describe(self, message: Message, time: float) -> list[tuple[str, Kind]]:
-        match message:
-            case Subject():
-                sex = 'male' if message.sex == Subject.SEX_MALE else 'female'
+        # Of rclpy's class or of rosbags'.
+        match type(message).__name__.rpartition('__')[2]:
+            case 'Subject':
+                sex = 'male' if message.sex == _SUBJECT.SEX_MALE else 'female'
                 return [
                     (
                         f'subject {message.pseudonym}: {sex}, {message.mass:.1f} kg, '
@@ -126,40 +112,41 @@ class LiveState:
                         Kind.PLAIN,
                     )
                 ]
-            case Task():
+            case 'Task':
                 origin = 'SIMULATED recording' if message.simulated else 'recording'
                 text = f'task {message.task_id}: box of {message.box_mass:g} kg ({origin})'
                 return [(text, Kind.PLAIN)]
-            case LiftEvent():
+            case 'LiftEvent':
                 return [self._lift_event(message)]
-            case PredictedLift():
+            case 'PredictedLift':
                 return [_prediction(message)]
-            case LiftComparison():
+            case 'LiftComparison':
                 return _comparison(message)
-            case SpineLoad():
+            case 'SpineLoad':
                 return self._spine_load(message, time)
-            case AlarmEvent():
+            case 'AlarmEvent':
                 return [_alarm(message)]
-            case RiskAssessment():
+            case 'RiskAssessment':
                 self.lifts_assessed.add(message.lift_id)
                 return [_assessment(message)]
         return []
+        return []
 
-    def _lift_event(self, message: LiftEvent) -> tuple[str, Kind]:
-        source = 'box' if message.detected_from == LiftEvent.FROM_BOX else 'hands'
-        if message.event == LiftEvent.END:
+    def _lift_event(self, message: Message) -> tuple[str, Kind]:
+        source = 'box' if message.detected_from == _LIFT_EVENT.FROM_BOX else 'hands'
+        if message.event == _LIFT_EVENT.END:
             self.lifts_ended.add(message.lift_id)
-        verb = 'begins' if message.event == LiftEvent.START else 'ends'
+        verb = 'begins' if message.event == _LIFT_EVENT.START else 'ends'
         return f'{message.lift_id} {verb}, {source} at {message.height:.2f} m', Kind.PLAIN
 
-    def _spine_load(self, message: SpineLoad, time: float) -> list[tuple[str, Kind]]:
-        if message.source == SpineLoad.LIVE:
+    def _spine_load(self, message: Message, time: float) -> list[tuple[str, Kind]]:
+        if message.source == _SPINE_LOAD.LIVE:
             self.now = max(self.now, time)
             if message.status[-1] == 0:
                 self.compression = message.compression[-1]
                 self.shear = message.anterior_shear[-1]
             return []
-        name = 'measured' if message.source == SpineLoad.MEASURED else 'predicted'
+        name = 'measured' if message.source == _SPINE_LOAD.MEASURED else 'predicted'
         good = np.asarray(message.status) == 0
         if not good.any():
             text = f'{message.lift_id} {name}: no sample solved: {message.report.message}'
@@ -176,7 +163,7 @@ class LiveState:
         return [(text, Kind.WARNING if left_out else Kind.PLAIN)]
 
 
-def _prediction(message: PredictedLift) -> tuple[str, Kind]:
+def _prediction(message: Message) -> tuple[str, Kind]:
     report = message.report
     if report.status != 0:
         return f'{message.lift_id} prediction failed: {report.message}', Kind.WARNING
@@ -187,7 +174,7 @@ def _prediction(message: PredictedLift) -> tuple[str, Kind]:
     )
 
 
-def _comparison(message: LiftComparison) -> list[tuple[str, Kind]]:
+def _comparison(message: Message) -> list[tuple[str, Kind]]:
     if message.report.status != 0:
         return []
     angles = ', '.join(
@@ -201,12 +188,12 @@ def _comparison(message: LiftComparison) -> list[tuple[str, Kind]]:
     return [(text, Kind.PLAIN)]
 
 
-def _alarm(message: AlarmEvent) -> tuple[str, Kind]:
+def _alarm(message: Message) -> tuple[str, Kind]:
     active = message.state in (
-        AlarmEvent.UNACKNOWLEDGED_ACTIVE,
-        AlarmEvent.ACKNOWLEDGED_ACTIVE,
-        AlarmEvent.LATCHED_UNACKNOWLEDGED,
-        AlarmEvent.LATCHED_ACKNOWLEDGED,
+        _ALARM_EVENT.UNACKNOWLEDGED_ACTIVE,
+        _ALARM_EVENT.ACKNOWLEDGED_ACTIVE,
+        _ALARM_EVENT.LATCHED_UNACKNOWLEDGED,
+        _ALARM_EVENT.LATCHED_ACKNOWLEDGED,
     )
     unit = '' if message.unit == '1' else f' {message.unit}'
     text = (
@@ -217,11 +204,11 @@ def _alarm(message: AlarmEvent) -> tuple[str, Kind]:
     return text, Kind.ALARM if active else Kind.GOOD
 
 
-def _assessment(message: RiskAssessment) -> tuple[str, Kind]:
+def _assessment(message: Message) -> tuple[str, Kind]:
     kind = {
-        RiskAssessment.ZONE_NOMINAL: Kind.GOOD,
-        RiskAssessment.ZONE_ACTION: Kind.WARNING,
-        RiskAssessment.ZONE_HAZARDOUS: Kind.ALARM,
+        _RISK_ASSESSMENT.ZONE_NOMINAL: Kind.GOOD,
+        _RISK_ASSESSMENT.ZONE_ACTION: Kind.WARNING,
+        _RISK_ASSESSMENT.ZONE_HAZARDOUS: Kind.ALARM,
     }.get(message.zone, Kind.WARNING)
     text = f'{message.lift_id} assessed: {message.summary}'
     return text, kind

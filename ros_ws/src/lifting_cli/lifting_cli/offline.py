@@ -12,52 +12,35 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from human_model.exceptions import HumanModelError
+from human_model.exceptions import LiftingError
 from human_model.report import SolveStatus
 from injury_monitor import conversions as monitor_messages
-from injury_monitor.core.exceptions import InjuryMonitorError
 from injury_monitor.core.lift_parts import MEASURED, PREDICTED, LiftCollector
 from injury_monitor.core.monitor import InjuryMonitor
 from lift_predictor import conversions as predictor_messages
-from lift_predictor.core.exceptions import LiftPredictorError
 from lift_predictor.core.predictor import LiftPredictor
 from lifting_cli.graph_errors import SessionError
 from lifting_cli.live_state import FOLLOWED, LiveState
 from lifting_cli.live_view import LiveView
-from lifting_cli.session import NO_LIFT, gauge_limits, summarise
-from lifting_node.conversions import (
+from lifting_cli.recording_summary import NO_LIFT, gauge_limits, summarise
+from lifting_messages.conversions import (
     lift_from_msg,
     motion_from_msg,
     quality_from_msg,
     subject_from_msg,
 )
-from lifting_node.parameters import load_table
+from lifting_messages.parameters import defaults
 from lifting_recordings.reader import BagReader
 from lifting_report.results_writer import ResultsWriter
 from motion_tracker import conversions as tracker_messages
 from motion_tracker import inputs
 from motion_tracker.core import tracked
 from motion_tracker.core.configuration import tracker_from
-from motion_tracker.core.exceptions import MotionTrackerError
 from motion_tracker.core.tracker import MotionTracker
 from muscle_analyzer import conversions as muscle_messages
-from muscle_analyzer.core.exceptions import MuscleAnalyzerError
 from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
 
-INPUT_ERRORS = (
-    MotionTrackerError,
-    LiftPredictorError,
-    MuscleAnalyzerError,
-    InjuryMonitorError,
-    HumanModelError,
-)
-
 Emit = Callable[[str, Any], None]
-
-
-def defaults(package: str) -> dict[str, Any]:
-    """Return the default parameters of a node."""
-    return {parameter.name: parameter.default for parameter in load_table(package)}
 
 
 class OfflineGraph:
@@ -98,7 +81,7 @@ class OfflineGraph:
         """Take one message of the recording; an input error is reported and the run goes on."""
         try:
             self._feed(topic, message)
-        except INPUT_ERRORS as error:
+        except LiftingError as error:
             self._complain(f'{topic}: {error}')
 
     def flush(self) -> None:
@@ -240,7 +223,7 @@ class OfflineGraph:
             spine, torques, muscles = self._analyze(
                 message.motion, motion, message.lift_id, source, message.box_mass
             )
-        except (MuscleAnalyzerError, HumanModelError) as error:
+        except LiftingError as error:
             self._complain(f'{source}_lift {message.lift_id}: {error}')
             return
         parts.spine[source] = monitor_messages.spine_from_msg(spine)

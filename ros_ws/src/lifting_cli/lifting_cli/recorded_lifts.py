@@ -10,9 +10,9 @@ from pathlib import Path
 from human_model.exceptions import HumanModelError
 from human_model.subject import Subject
 from lifting_cli.graph_errors import SessionError
-from lifting_cli.session import summarise
-from lifting_node.conversions import subject_from_msg
-from lifting_node.parameters import load_table
+from lifting_cli.recording_summary import summarise
+from lifting_messages.conversions import subject_from_msg
+from lifting_messages.parameters import defaults
 from lifting_recordings.reader import BagReader
 from motion_tracker import inputs
 from motion_tracker.core.configuration import tracker_from
@@ -60,10 +60,9 @@ def recorded_lifts(bag: Path) -> RecordedLifts:
         latched = {n.strip('/'): m for n, _, m in reader.messages(['/subject', '/task'])}
         if missing := {'subject', 'task'} - latched.keys():
             raise SessionError(f'{bag}: nothing in topic {sorted(missing)[0]!r}')
-        defaults = {p.name: p.default for p in load_table('motion_tracker')}
         try:
             tracker = tracker_from(
-                defaults,
+                defaults('motion_tracker'),
                 subject_from_msg(latched['subject']),
                 latched['subject'].marker_set,
                 *inputs.task_from_msg(latched['task']),

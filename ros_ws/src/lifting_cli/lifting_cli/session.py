@@ -24,7 +24,6 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from std_srvs.srv import SetBool, Trigger
 
-from injury_monitor.core.limits import limits_for
 from lifting_cli.graph import Graph
 from lifting_cli.graph_errors import SessionError
 from lifting_cli.interruption import SignalMask
@@ -37,9 +36,10 @@ from lifting_cli.node_process import (
     start_module,
     stop_all,
 )
-from lifting_messages.plate_blocks import block_topic
+from lifting_cli.recording_summary import NO_LIFT, BagSummary, gauge_limits, summarise
+from lifting_cli.transport.qos import message_class
+from lifting_messages.message_types import full_name
 from lifting_node import qos
-from lifting_recordings.reader import BagReader
 
 #: Topics of the results file: the recording's description and everything the graph says of it.
 RESULT_TOPICS = (
@@ -63,15 +63,9 @@ RESULT_TOPICS = (
 #: What the pictures are made of, recorded where it is asked for.
 VISUALIZATION_TOPICS = ('robot_description', 'visualization', '/tf', '/tf_static')
 
-PLATES = tuple(f'force_plates/{side}/wrench' for side in ('right', 'left'))
-#: Topics the motion tracker reads.
-INPUTS = ('markers', 'box/pose', *PLATES, *map(block_topic, PLATES))
 
 #: Topics of the results that a graph may offer once a frame; the rest comes once a lift.
 _QOS = {'subject': qos.LATCHED, 'task': qos.LATCHED, 'spine_load': qos.FRAMES}
-
-#: Said when a recording ends without a lift.
-NO_LIFT = 'no lift found: nothing rose as motion_tracker asks for'
 
 #: Time [s] that closing this process's own node may take.
 CLOSING = 10.0
@@ -131,35 +125,6 @@ class RunReport:
     state: LiveState
     ready: float
     exit_codes: dict[str, int] = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class BagSummary:
-    """Start [s], duration [s], loads per day and input topics of a recording."""
-
-    start: float
-    duration: float
-    lifts_per_day: float
-    inputs: tuple[str, ...]
-
-
-def summarise(path: Path) -> BagSummary:
-    """Read what the live view must know before the first message."""
-    with BagReader(path) as bag:
-        tasks = [name for name in bag.topics if name.strip('/') == 'task']
-        per_day = [m.lifts_per_day for _, _, m in bag.messages(tasks)] if tasks else []
-        return BagSummary(
-            start=bag.start_ns * 1e-9,
-            duration=(bag.end_ns - bag.start_ns) * 1e-9,
-            lifts_per_day=per_day[-1] if per_day else 0.0,
-            inputs=tuple(name.strip('/') for name in bag.topics if name.strip('/') in INPUTS),
-        )
-
-
-def gauge_limits(summary: BagSummary) -> dict[str, float]:
-    """Return the limits [N] that the gauges of the live view show."""
-    limits = limits_for(summary.lifts_per_day)
-    return {'compression': limits.compression_action.value, 'shear': limits.shear.value}
 
 
 def run_online(
@@ -296,9 +261,10 @@ class _Session:
         self._clients: dict[str, Client] = {}
         # A server drops the answer to a client that it has not heard of yet: known from the start.
         self._client(Trigger, 'motion_tracker/flush')
-        for topic, message_type in FOLLOWED.items():
+        for topic, name in FOLLOWED.items():
             profile = _QOS.get(topic, qos.RESULTS)
-            node.create_subscription(message_type, topic, self._take, profile)
+            kind = message_class(full_name(name))
+            node.create_subscription(kind, topic, self._take, profile)
 
     def _take(self, message: Any) -> None:
         self._last = time.monotonic()

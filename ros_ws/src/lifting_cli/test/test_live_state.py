@@ -8,7 +8,7 @@ import pytest
 from lifting_interfaces.msg import AlarmEvent, LiftEvent, PredictedLift, RiskAssessment, SpineLoad
 
 from lifting_cli.live_state import Kind, LiveState
-from lifting_node.stamps import to_stamp
+from lifting_messages.stamps import to_stamp
 
 START = 1_000.0
 

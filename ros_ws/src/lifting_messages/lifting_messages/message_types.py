@@ -68,6 +68,7 @@ def typestore() -> Typestore:
     return store
 
 
+@cache
 def full_name(name: str) -> str:
     """Return 'package/msg/Name' of 'package/Name', or of a name of lifting_interfaces."""
     if '/' not in name:
@@ -75,6 +76,7 @@ def full_name(name: str) -> str:
     return name if '/msg/' in name else name.replace('/', '/msg/')
 
 
+@cache
 def message_type(name: str) -> Any:
     """Return the class of a message; its constants are attributes.
 
@@ -94,14 +96,35 @@ def message_type(name: str) -> Any:
     return kind
 
 
-def make(name: str, **fields: Any) -> Message:
-    """Return a message of a type (`message_type`); fields that are not given are zero or empty."""
-    kind = message_type(name)
-    return kind(**{**_empty(full_name(name)), **fields})
+def make(name: str, /, **fields: Any) -> Message:
+    """Return a message of a type.
+
+    Parameters
+    ----------
+    name : str
+        As `message_type` takes it.
+    **fields
+        Values; those that are not given are zero or empty. Arrays of numbers may have any shape
+        (they are written row-major) and type.
+    """
+    for field, kind, content in _contents(full_name(name)):
+        if field not in fields:
+            fields[field] = _zero(*content)
+        elif kind is not None:
+            fields[field] = np.ascontiguousarray(fields[field], kind).reshape(-1)
+    return message_type(name)(**fields)
 
 
-def _empty(name: str) -> dict[str, Any]:
-    return {field: _zero(*content) for field, content in typestore().fielddefs[name][1]}
+@cache
+def _contents(name: str) -> tuple[tuple[str, np.dtype[Any] | None, Any], ...]:
+    """Return name, type of the numbers if it is an array of them, and content of each field."""
+    contents = []
+    for field, (node, content) in typestore().fielddefs[name][1]:
+        numbers = node in (Nodetype.ARRAY, Nodetype.SEQUENCE)
+        numbers = numbers and content[0][0] == Nodetype.BASE and content[0][1][0] != 'string'
+        kind = np.dtype(content[0][1][0]) if numbers else None
+        contents.append((field, kind, (node, content)))
+    return tuple(contents)
 
 
 def _zero(node: Nodetype, content: Any) -> Any:

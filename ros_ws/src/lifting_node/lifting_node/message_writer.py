@@ -10,7 +10,6 @@ seen, and arrays are copied as they lie.
 from __future__ import annotations
 
 import struct
-from array import array
 from collections.abc import Callable, Mapping
 from typing import Any, Final
 
@@ -20,8 +19,6 @@ from lifting_node.cdr import COUNT, LITTLE_ENDIAN_HEAD, fields
 
 #: Adds a value to the bytes behind the head.
 Put = Callable[[bytearray, Any], None]
-#: Gives a value in the form that a message object has it in.
-Make = Callable[[Any], Any]
 
 #: Bytes that fill up to the next place of two, four or eight.
 _FILL: Final = tuple(bytes(size) for size in range(8))
@@ -45,12 +42,9 @@ class MessageWriter:
     """
 
     def __init__(self, message_type: Any) -> None:
-        self._type = message_type
-        forms = [
-            (name, *_form(several, content)) for name, several, content in fields(message_type)
+        self._puts = [
+            (name, _form(several, content)) for name, several, content in fields(message_type)
         ]
-        self._puts = [(name, put) for name, put, _ in forms]
-        self._makes = [(name, make) for name, _, make in forms]
 
     def write(self, values: Mapping[str, Any]) -> bytes:
         """Return the serialised message (common data representation, little-endian).
@@ -64,26 +58,22 @@ class MessageWriter:
         self.put(out, values)
         return LITTLE_ENDIAN_HEAD + out
 
-    def put(self, out: bytearray, values: Mapping[str, Any]) -> None:
+    def put(self, out: bytearray, values: Mapping[str, Any] | Any) -> None:
         """Add the message to the bytes of one that it is a part of; raises as `write`."""
+        fields_ = values if isinstance(values, Mapping) else vars(values)
         for name, put in self._puts:
-            put(out, values[name])
-
-    def make(self, values: Mapping[str, Any]) -> Any:
-        """Return the message as an object; raises as `write`."""
-        return self._type(**{name: make(values[name]) for name, make in self._makes})
+            put(out, fields_[name])
 
 
-def _form(several: bool, content: Any) -> tuple[Put, Make]:
-    """Return what writes a field of such content, and what makes its value in a message object."""
+def _form(several: bool, content: Any) -> Put:
+    """Return the function that writes a field of such content."""
     if content is str:
-        return (_Names(), list) if several else (_put_text, str)
+        return _Names() if several else _put_text
     if not isinstance(content, str):
-        part = MessageWriter(content)
-        return part.put, part.make
+        return MessageWriter(content).put
     if several:
         return _numbers(content)
-    return _number(struct.Struct('<' + content)), float if content == 'd' else int
+    return _number(struct.Struct('<' + content))
 
 
 def _number(kind: struct.Struct) -> Put:
@@ -96,7 +86,7 @@ def _number(kind: struct.Struct) -> Put:
     return put
 
 
-def _numbers(code: str) -> tuple[Put, Make]:
+def _numbers(code: str) -> Put:
     kind = np.dtype('<' + code)
     size = kind.itemsize
 
@@ -109,11 +99,7 @@ def _numbers(code: str) -> tuple[Put, Make]:
             # Its own bytes, not a copy: those of a whole lift are half a megabyte.
             out += data.data
 
-    def make(value: Any) -> array[Any]:
-        # The form that rclpy takes without looking at each element.
-        return array(code, np.asarray(value, kind).tobytes())
-
-    return put, make
+    return put
 
 
 def _put_text(out: bytearray, value: str) -> None:

@@ -22,8 +22,9 @@ from rclpy.lifecycle import (
 from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
 
+from lifting_messages.parameters import load_table
 from lifting_node.garbage import TimedSearch
-from lifting_node.parameters import declare, load_table
+from lifting_node.parameters import declare
 
 
 class PipelineNode(LifecycleNode):

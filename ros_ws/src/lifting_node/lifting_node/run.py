@@ -13,7 +13,7 @@ from rclpy.experimental import EventsExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 
-from lifting_node.parameters import ParameterError
+from lifting_messages.exceptions import ParameterError
 
 
 def run_node(factory: Callable[[], Node], args: list[str] | None = None) -> None:

@@ -44,15 +44,17 @@ def torques(names=('knee', 'hip_r'), torque=(1.0, 2.0), frame_id='world', status
 )
 def test_middleware_and_view_read_what_was_written(names, torque, frame_id, status):
     values = torques(names, torque, frame_id, status)
-    data, wanted = TORQUES.write(values), TORQUES.make(values)
-    assert deserialize_message(data, JointTorques) == wanted
+    data = TORQUES.write(values)
+    message = deserialize_message(data, JointTorques)
+    assert (tuple(message.joint_names), list(message.torque)) == (names, torque)
+    assert (message.header.frame_id, list(message.status)) == (frame_id, status)
     view = MessageView(JointTorques).read(data)
     assert (view.joint_names, view.header.frame_id) == (names, frame_id)
     assert list(view.torque) == torque
 
 
 def test_object_has_the_values():
-    message = TORQUES.make(torques())
+    message = deserialize_message(TORQUES.write(torques()), JointTorques)
     assert (message.lift_id, message.source) == ('lift_001', JointTorques.MEASURED)
     assert (message.header.stamp.sec, message.header.stamp.nanosec) == (5, 250_000_000)
     assert message.joint_names == ['knee', 'hip_r']
@@ -69,9 +71,8 @@ def test_names_that_change_are_written_anew():
 def test_missing_value_is_named():
     values = torques()
     del values['torque_lower']
-    for call in (TORQUES.write, TORQUES.make):
-        with pytest.raises(KeyError, match='torque_lower'):
-            call(values)
+    with pytest.raises(KeyError, match='torque_lower'):
+        TORQUES.write(values)
 
 
 def test_message_within_a_message_and_single_numbers():
@@ -81,7 +82,6 @@ def test_message_within_a_message_and_single_numbers():
     values = _values_of(SpineLoad(body_mass=63.5)) | {'box_mass': 12}
     values['report'] |= {'message': 'too weak', 'iterations': 7, 'solve_time': 0.25}
     message = deserialize_message(writer.write(values), SpineLoad)
-    assert message == writer.make(values)
     assert (message.body_mass, message.box_mass) == (63.5, 12.0)
     assert (message.report.message, message.report.iterations) == ('too weak', 7)
 

@@ -6,7 +6,9 @@ import pytest
 import rclpy
 from rclpy.node import Node
 
-from lifting_node.parameters import Parameter, ParameterError, declare
+from lifting_messages.exceptions import ParameterError
+from lifting_messages.parameters import Parameter
+from lifting_node.parameters import declare
 
 TABLE = (
     Parameter('cutoff', 'Low-pass of the motion', 'Hz', 6.0, 1.0, 30.0),

@@ -11,8 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from geometry_msgs.msg import Point
-from lifting_interfaces.msg import Task as TaskMsg
 
 from injury_monitor.core.limits import LimitSet, limits_for, zone_meaning
 from lift_predictor import conversions as predictor_messages
@@ -21,18 +19,20 @@ from lift_predictor.core.planning.planned_lift import PlannedLift
 from lift_predictor.core.planning.summary import PlanSummary, summarise
 from lift_predictor.core.planning.task_file import TaskFile
 from lift_predictor.core.problem.run import SolverRun
-from lifting_node.conversions import subject_to_msg
-from lifting_node.stamps import to_stamp
+from lifting_messages import Message, make, message_type
+from lifting_messages.conversions import LABORATORY, point, subject_to_msg
+from lifting_messages.stamps import header
 from lifting_report.exceptions import ReportError
 from lifting_report.results_writer import ResultsWriter
 from muscle_analyzer import conversions as muscle_messages
 from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
 
 STATION = 'planned'
+_TASK = message_type('Task')
 _COUPLINGS = {
-    'good': TaskMsg.COUPLING_GOOD,
-    'fair': TaskMsg.COUPLING_FAIR,
-    'poor': TaskMsg.COUPLING_POOR,
+    'good': _TASK.COUPLING_GOOD,
+    'fair': _TASK.COUPLING_FAIR,
+    'poor': _TASK.COUPLING_POOR,
 }
 
 
@@ -92,11 +92,13 @@ def write_plan(planned: PlannedLift, entry: TaskFile, output: Path) -> PlanFiles
     return PlanFiles(path, results, summary, spine)
 
 
-def task_message(entry: TaskFile, box_mass: float) -> TaskMsg:
+def task_message(entry: TaskFile, box_mass: float) -> Message:
     """Return a planned task as recordings have it."""
     task, work = entry.task, entry.work
-    start, end = (Point(x=x, y=y, z=z) for x, y, z in (task.start, task.end))
-    message = TaskMsg(
+    start, end = (point(np.asarray(place)) for place in (task.start, task.end))
+    return make(
+        'Task',
+        header=header(0.0, LABORATORY),
         task_id=task.name,
         description=f'planned: {entry.path.name}',
         box_mass=box_mass,
@@ -110,9 +112,6 @@ def task_message(entry: TaskFile, box_mass: float) -> TaskMsg:
         simulated=True,
         source='planned without a recording',
     )
-    message.header.stamp = to_stamp(0.0)
-    message.header.frame_id = 'world'
-    return message
 
 
 def _write_results(planned: PlannedLift, entry: TaskFile, path: Path) -> SpinePeak:

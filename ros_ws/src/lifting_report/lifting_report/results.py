@@ -10,14 +10,13 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from lifting_interfaces.msg import Subject
-
 from human_model.exceptions import HumanModelError
 from human_model.report import SolveStatus
 from injury_monitor.core.alarm import AlarmState
 from lift_predictor.core.exceptions import LiftPredictorError
 from lift_predictor.core.models.sagittal.person import Person
-from lifting_node.conversions import subject_from_msg
+from lifting_messages import message_type
+from lifting_messages.conversions import subject_from_msg
 from lifting_recordings.exceptions import BagError
 from lifting_report import __version__
 from lifting_report import results_curves as curves
@@ -134,7 +133,7 @@ def _header(results: Results, facts: RunFacts) -> Header:
     subject, task = results.subject, results.task
     return Header(
         subject=subject.pseudonym,
-        sex='male' if subject.sex == Subject.SEX_MALE else 'female',
+        sex='male' if subject.sex == message_type('Subject').SEX_MALE else 'female',
         mass=subject.mass,
         stature=subject.stature,
         age=subject.age,

@@ -15,7 +15,7 @@ from human_model.typing import Array
 from lift_predictor.core.exceptions import LiftPredictorError
 from lift_predictor.core.models.sagittal.person import Person
 from lift_predictor.core.models.sagittal.plane import SagittalPlane, sagittal_motion
-from lifting_node.conversions import motion_from_msg
+from lifting_messages.conversions import motion_from_msg
 from lifting_report.report_data import (
     Activations,
     BodyPoints,

@@ -8,13 +8,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from lifting_interfaces.msg import LiftEvent, SpineLoad
-
+from lifting_messages import message_type
 from lifting_recordings.exceptions import BagError
 from lifting_recordings.reader import BagReader
 
 MEASURED, PREDICTED = 'measured', 'predicted'
-_SOURCE = {SpineLoad.MEASURED: MEASURED, SpineLoad.PREDICTED: PREDICTED}
+_SPINE_LOAD, _LIFT_EVENT = message_type('SpineLoad'), message_type('LiftEvent')
+_SOURCE = {_SPINE_LOAD.MEASURED: MEASURED, _SPINE_LOAD.PREDICTED: PREDICTED}
 #: Blocks that come once for the recorded and once for the predicted lift.
 _BLOCKS = ('muscle_analysis', 'spine_load', 'joint_reactions', 'joint_torques')
 _SINGLE = ('measured_lift', 'predicted_lift', 'lift_comparison', 'risk_assessment')
@@ -103,7 +103,7 @@ def read_results(path: Path) -> Results:
             elif topic == 'alarms':
                 alarms.append(message)
             elif topic == 'lift_event':
-                if message.event == LiftEvent.START:
+                if message.event == _LIFT_EVENT.START:
                     lifts.setdefault(message.lift_id, LiftMessages())
             elif topic in _SINGLE:
                 lifts.setdefault(message.lift_id, LiftMessages()).single[topic] = message

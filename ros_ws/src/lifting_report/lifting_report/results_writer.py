@@ -4,13 +4,11 @@
 
 from __future__ import annotations
 
-import array
 import shutil
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-import numpy as np
 from rosbags.interfaces import Connection
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 from rosbags.typesys.store import Typestore
@@ -59,13 +57,8 @@ class ResultsWriter:
         shutil.rmtree(self._folder)
 
     def write(self, topic: str, message: Any) -> None:
-        """Write one message of the interfaces under the stamp of its header.
-
-        Not by rclpy's serialize_message: behind a message that ends with an empty sequence it
-        leaves undefined bytes, which readers refuse.
-        """
-        decoded = _decoded(message, self._store)
-        self.write_decoded(topic, decoded, self._store)
+        """Write one message under the stamp of its header."""
+        self.write_decoded(topic, message, self._store)
 
     def write_decoded(self, topic: str, message: Any, store: Typestore) -> None:
         """Write one message decoded from a recording."""
@@ -82,19 +75,3 @@ class ResultsWriter:
             )
         time = stamp.sec * NANOSECONDS + stamp.nanosec
         self._writer.write(self._connections[topic], time, data)
-
-
-def _decoded(value: Any, store: Typestore) -> Any:
-    """Return a value of an rclpy message, or the message, as the store has it."""
-    if hasattr(value, 'get_fields_and_field_types'):
-        package = type(value).__module__.split('.', 1)[0]
-        fields = {
-            name: _decoded(getattr(value, name), store)
-            for name in value.get_fields_and_field_types()
-        }
-        return store.types[f'{package}/msg/{type(value).__name__}'](**fields)
-    if isinstance(value, array.array):
-        return np.asarray(value)
-    if isinstance(value, list):
-        return [_decoded(entry, store) for entry in value]
-    return value

@@ -5,27 +5,27 @@
 import numpy as np
 import pytest
 
-pytest.importorskip('lifting_interfaces.msg', reason='the interface package is not built')
-
-from geometry_msgs.msg import Point
-from lifting_interfaces.msg import PredictedLift, RiskAssessment, Task
-from sensor_msgs.msg import JointState
-from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
-
+from lifting_messages import make
+from lifting_messages.conversions import point
 from lifting_recordings.reader import BagReader
 from lifting_report.results_writer import ResultsWriter
 
 
 def test_messages_come_back_as_they_were(tmp_path):
-    joints = JointState(name=['a', 'b'], position=[1.0, 2.0], velocity=[3.0, 4.0])
-    failed = PredictedLift(lift_id='lift_001')
+    joints = make(
+        'sensor_msgs/JointState', name=['a', 'b'], position=[1.0, 2.0], velocity=[3.0, 4.0]
+    )
+    failed = make('PredictedLift', lift_id='lift_001')
     failed.report.status = 202
     failed.report.message = 'no feasible motion'
-    risk = RiskAssessment(criterion=['x'], multipliers=[1.0, 0.9, 0.8, 0.7, 0.6, 0.5])
-    task = Task(task_id='t', box_size=[0.1, 0.2, 0.3], box_start=Point(x=1.0, y=2.0, z=np.nan))
-    path = JointTrajectory(
-        joint_names=['a'], points=[JointTrajectoryPoint(positions=[1.5]), JointTrajectoryPoint()]
-    )
+    risk = make('RiskAssessment', criterion=['x'], multipliers=[1.0, 0.9, 0.8, 0.7, 0.6, 0.5])
+    place = point(np.array([1.0, 2.0, np.nan]))
+    task = make('Task', task_id='t', box_size=[0.1, 0.2, 0.3], box_start=place)
+    moments = [
+        make('trajectory_msgs/JointTrajectoryPoint', positions=positions)
+        for positions in ([1.5], [])
+    ]
+    path = make('trajectory_msgs/JointTrajectory', joint_names=['a'], points=moments)
     messages = {
         'joint_states': joints,
         'predicted_lift': failed,

@@ -16,8 +16,8 @@ from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
 
 from human_model.typing import Array
-from lifting_node.conversions import LABORATORY
-from lifting_node.stamps import to_seconds
+from lifting_messages.conversions import LABORATORY
+from lifting_messages.stamps import to_seconds
 from lifting_visualization.core.exceptions import PictureError
 from lifting_visualization.core.link_frames import LinkFrames
 from lifting_visualization.core.shapes import Kind, Shape

@@ -17,17 +17,17 @@ from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
 
 from human_model.exceptions import HumanModelError
-from lifting_node import qos
-from lifting_node.conversions import (
+from lifting_messages.conversions import (
     LABORATORY,
     lift_from_msg,
     motion_from_msg,
     quality_from_msg,
     subject_from_msg,
 )
+from lifting_messages.stamps import split
+from lifting_node import qos
 from lifting_node.pipeline_node import PipelineNode
 from lifting_node.run import run_node
-from lifting_node.stamps import to_stamp
 from lifting_visualization import conversions
 from lifting_visualization.core.drawing import SpineScale
 from lifting_visualization.core.exceptions import LiftingVisualizationError
@@ -177,7 +177,8 @@ class LiftingVisualizationNode(PipelineNode):
     def _now(self) -> Time:
         """Return the data's time: that of the last live sample and what has passed since."""
         stamp, came = self._last
-        return to_stamp(stamp + time.monotonic() - came if stamp else 0.0)
+        sec, nanosec = split(stamp + time.monotonic() - came if stamp else 0.0)
+        return Time(sec=sec, nanosec=nanosec)
 
 
 def main(args: list[str] | None = None) -> None:

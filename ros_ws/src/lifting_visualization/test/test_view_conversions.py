@@ -11,18 +11,18 @@ import pytest
 pytest.importorskip('rclpy', reason='rclpy is not installed')
 pytest.importorskip('tf2_msgs.msg', reason='tf2_msgs is neither built nor installed')
 
+from builtin_interfaces.msg import Time
 from lifting_interfaces.msg import SpineLoad
 from rclpy.serialization import deserialize_message
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker
 
-from lifting_node.stamps import to_stamp
 from lifting_visualization import conversions
 from lifting_visualization.core.exceptions import PictureError
 from lifting_visualization.core.link_frames import LinkFrames
 from lifting_visualization.core.shapes import Kind, Shape, nothing
 
-STAMP = to_stamp(12.5)
+STAMP = Time(sec=12, nanosec=500_000_000)
 COLOUR = (0.25, 0.5, 0.75, 1.0)
 
 
@@ -74,7 +74,7 @@ def test_transforms(skeleton, station):
     links = LinkFrames(skeleton, station)
     writer = conversions.TransformWriter(links.parents, links.children)
     rng = np.random.default_rng(7)
-    for stamp in (to_stamp(1.0), STAMP):
+    for stamp in (Time(sec=1), STAMP):
         values = links.transforms(skeleton.coordinates, rng.normal(size=40))
         message = deserialize_message(writer.message(stamp, values), TFMessage)
     assert [t.child_frame_id for t in message.transforms] == list(links.children)

@@ -12,6 +12,7 @@ rclpy = pytest.importorskip('rclpy', reason='rclpy is not installed')
 pytest.importorskip('lifting_interfaces.msg', reason='the interface package is not built')
 pytest.importorskip('tf2_msgs.msg', reason='tf2_msgs is neither built nor installed')
 
+from builtin_interfaces.msg import Time  # noqa: E402
 from geometry_msgs.msg import PoseStamped  # noqa: E402
 from lifting_interfaces.msg import (  # noqa: E402
     BodyMotion,
@@ -26,9 +27,11 @@ from std_msgs.msg import String  # noqa: E402
 from tf2_msgs.msg import TFMessage  # noqa: E402
 from visualization_msgs.msg import Marker, MarkerArray  # noqa: E402
 
+from lifting_messages import encode  # noqa: E402
+from lifting_messages.conversions import MotionQuality, motion_to_msg, subject_to_msg  # noqa: E402
+from lifting_messages.stamps import to_stamp  # noqa: E402
 from lifting_node import qos  # noqa: E402
-from lifting_node.conversions import MotionQuality, motion_to_msg, subject_to_msg  # noqa: E402
-from lifting_node.stamps import to_stamp  # noqa: E402
+from lifting_node.ros_messages import to_ros  # noqa: E402
 from lifting_visualization.lifting_visualization_node import (  # noqa: E402
     LiftingVisualizationNode,
 )
@@ -101,7 +104,7 @@ class Station:
         """Publish once there is a reader."""
         publisher = self.publishers[topic]
         self.until(lambda: publisher.get_subscription_count() > 0, f'reader of {topic}')
-        publisher.publish(message)
+        publisher.publish(encode(message) if hasattr(message, '__msgtype__') else message)
 
     def close(self):
         """End everything."""
@@ -159,7 +162,7 @@ def load_message(stamp, **fields):
         }
         | fields
     )
-    message.header.stamp = to_stamp(stamp)
+    message.header.stamp = to_ros(to_stamp(stamp), Time)
     message.header.frame_id = 'cell_3/l5_s1'
     return message
 
@@ -189,7 +192,7 @@ def test_a_disc_whose_place_is_not_known_stays_away(station, woman):
     station.until(lambda: station.transforms, 'the frame of the disc')
     station.spin(0.2)
     (message,) = station.transforms
-    assert message.transforms[0].header.stamp == to_stamp(3.0)
+    assert message.transforms[0].header.stamp == Time(sec=3)
 
 
 def test_a_sample_that_was_not_solved_moves_no_link(station, woman, motion_at):
@@ -209,7 +212,9 @@ def test_predicted_lift_goes_round(station, woman, skeleton):
     q[:, skeleton.index('pelvis_tx')] += np.linspace(0.0, 0.4, n)
     motion = skeleton.body_motion(3.0 + np.linspace(0.0, 0.4, n), q, 0 * q, 0 * q)
     message = PredictedLift(
-        lift_id='lift_001', box_mass=9.0, motion=motion_to_msg(motion, MotionQuality.exact(n))
+        lift_id='lift_001',
+        box_mass=9.0,
+        motion=to_ros(motion_to_msg(motion, MotionQuality.exact(n)), BodyMotion),
     )
     station.send('predicted_lift', message)
     places = set()

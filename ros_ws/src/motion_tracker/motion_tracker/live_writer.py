@@ -15,14 +15,24 @@ from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
-from rclpy.serialization import serialize_message
+from geometry_msgs.msg import PointStamped, WrenchStamped
+from lifting_interfaces.msg import BodyMotion
+from sensor_msgs.msg import JointState
 
 from human_model.report import SolveStatus
+from lifting_messages import encode
+from lifting_messages.stamps import to_stamp
 from lifting_node.cdr import HEAD
 from lifting_node.message_view import MessageView
-from lifting_node.stamps import to_stamp
 from motion_tracker import conversions
 from motion_tracker.core.tracked import TrackedFrame
+
+_TYPES: Final = {
+    'lifting_interfaces/msg/BodyMotion': BodyMotion,
+    'sensor_msgs/msg/JointState': JointState,
+    'geometry_msgs/msg/WrenchStamped': WrenchStamped,
+    'geometry_msgs/msg/PointStamped': PointStamped,
+}
 
 #: Arrays of a body motion's message, and the fields they are taken from.
 _MOTION: Final = {
@@ -49,11 +59,9 @@ class _Template:
     """
 
     def __init__(self, message: Any) -> None:
-        data, reader = serialize_message(message), MessageView(type(message))
-        # Without the head doubles lie where the processor wants them. Behind an empty sequence
-        # at the end there is room that is not the message's: readers of recordings refuse it.
-        end = HEAD + reader.read_at(data[HEAD:], 0)[1]
-        self._head, self._octets = data[:HEAD], bytearray(data[HEAD:end])
+        data, reader = encode(message), MessageView(_TYPES[message.__msgtype__])
+        # Without the head doubles lie where the processor wants them.
+        self._head, self._octets = data[:HEAD], bytearray(data[HEAD:])
         self._stamp = np.frombuffer(self._octets, '<i4', 2)
         # NumPy views of the bytearray, which can be written to.
         octets: Any = self._octets

@@ -31,10 +31,10 @@ from human_model.constants import SIDES
 from human_model.exceptions import HumanModelError
 from human_model.subject import Subject
 from human_model.typing import Array
-from lifting_messages import LiftingMessagesError, decode
-from lifting_messages.plate_blocks import BLOCK, block_samples
+from lifting_messages import LiftingMessagesError, decode, encode
+from lifting_messages.conversions import subject_from_msg
+from lifting_messages.plate_blocks import BLOCK, SAMPLE, block_samples
 from lifting_node import qos
-from lifting_node.conversions import subject_from_msg
 from lifting_node.pipeline_node import PipelineNode
 from lifting_node.run import run_node
 from motion_tracker import conversions, inputs
@@ -146,11 +146,11 @@ class MotionTrackerNode(PipelineNode):
         self._take('markers', stamp, lambda tracker: tracker.push_markers(stamp, names, positions))
 
     def _on_box(self, data: bytes) -> None:
-        stamp, position = conversions.box_from_cdr(data)
+        stamp, position = inputs.box_from_msg(decode(data, 'geometry_msgs/PoseStamped'))
         self._take('box', stamp, lambda tracker: tracker.push_box(stamp, position))
 
     def _on_wrench(self, side: str, data: bytes) -> None:
-        stamp, force, moment = conversions.wrench_from_cdr(data)
+        stamp, force, moment = inputs.wrench_from_msg(decode(data, SAMPLE))
         self._take(side, stamp, lambda tracker: tracker.push_wrench(side, stamp, force, moment))
 
     def _on_block(self, side: str, data: bytes) -> None:
@@ -264,13 +264,14 @@ class MotionTrackerNode(PipelineNode):
             if output.message and not output.solution.ok:
                 self.report_error(f'frame not good: {output.message}')
         elif isinstance(output, DetectedEvent):
-            self._events.publish(conversions.event_to_msg(output))
+            self._events.publish(encode(conversions.event_to_msg(output)))
             self.get_logger().info(
                 f'{output.lift_id} {output.event.phase.name.lower()} at '
                 f'{output.event.time:.3f} s from the {output.detected_from}'
             )
         elif isinstance(output, TrackedLift) and self._subject is not None:
-            self._measured.publish(conversions.measured_lift_to_msg(output, self._subject[0]))
+            lift = conversions.measured_lift_to_msg(output, self._subject[0])
+            self._measured.publish(encode(lift))
             self.get_logger().info(f'{output.lift.lift_id}: {output.lift.report.message}')
         elif isinstance(output, Notice) and output.information:
             self.get_logger().info(output.text)

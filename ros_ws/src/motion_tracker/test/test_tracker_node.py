@@ -29,8 +29,8 @@ from sensor_msgs.msg import JointState  # noqa: E402
 from std_srvs.srv import Trigger  # noqa: E402
 
 from human_model.report import SolveStatus  # noqa: E402
+from lifting_messages.conversions import lift_from_msg, subject_from_msg  # noqa: E402
 from lifting_node import qos  # noqa: E402
-from lifting_node.conversions import lift_from_msg, subject_from_msg  # noqa: E402
 from motion_tracker import inputs  # noqa: E402
 from motion_tracker.core.configuration import tracker_from  # noqa: E402
 from motion_tracker.core.tracked import MeasuredLift as TrackedLift  # noqa: E402

@@ -1,69 +1,49 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Messages of the analyzer's results, and of what it reads.
-
-Each result has one function that gives the fields of its message, and one that makes the message;
-`WRITERS` make of the same fields the bytes of live samples.
-"""
+"""Messages of the analyzer's results and inputs."""
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from geometry_msgs.msg import WrenchStamped
-from lifting_interfaces.msg import JointReactions as JointReactionsMsg
-from lifting_interfaces.msg import JointTorques as JointTorquesMsg
-from lifting_interfaces.msg import MuscleAnalysis as MuscleAnalysisMsg
-from lifting_interfaces.msg import SpineLoad as SpineLoadMsg
 
 from human_model.motion import BodyMotion
 from human_model.report import SolveStatus
-from lifting_node.conversions import motion_from_msg, quality_from_msg, subject_from_msg
-from lifting_node.message_writer import MessageWriter
-from lifting_node.stamps import split
+from lifting_messages.conversions import (
+    motion_from_msg,
+    quality_from_msg,
+    report_to_msg,
+    subject_from_msg,
+    vector,
+)
+from lifting_messages.message_types import Message, make, message_type
+from lifting_messages.stamps import header
 from muscle_analyzer.core.loads.analysis import MuscleAnalysis
 from muscle_analyzer.core.loads.torque_limits import JointTorques
 
 __all__ = [
-    'WRITERS',
-    'analysis_fields',
     'analysis_to_msg',
     'disc_frame_id',
-    'joint_reactions_fields',
     'joint_reactions_to_msg',
     'mass_in_hands',
     'motion_from_msg',
     'quality_from_msg',
-    'reactions_fields',
     'reactions_to_msg',
-    'spine_load_fields',
     'spine_load_to_msg',
     'subject_from_msg',
-    'torques_fields',
     'torques_to_msg',
 ]
 
 #: Frame of the L5-S1 load: x anterior, y left, z along the disc normal towards the head.
 DISC = 'l5_s1'
 
-#: By type of message.
-WRITERS: Final = {
-    kind: MessageWriter(kind)
-    for kind in (
-        MuscleAnalysisMsg,
-        SpineLoadMsg,
-        JointReactionsMsg,
-        JointTorquesMsg,
-        WrenchStamped,
-    )
-}
-
+_SPINE_LOAD = message_type('SpineLoad')
 _SOURCES = {
-    'live': SpineLoadMsg.LIVE,
-    'measured': SpineLoadMsg.MEASURED,
-    'predicted': SpineLoadMsg.PREDICTED,
+    'live': _SPINE_LOAD.LIVE,
+    'measured': _SPINE_LOAD.MEASURED,
+    'predicted': _SPINE_LOAD.PREDICTED,
 }
 
 
@@ -78,35 +58,29 @@ def mass_in_hands(motion: BodyMotion, box_mass: float) -> float:
     return box_mass if np.count_nonzero(motion.hand_force) else 0.0
 
 
-def analysis_fields(analysis: MuscleAnalysis) -> dict[str, Any]:
-    """Return the fields of the message of muscle forces and the quality of the analysis."""
-    hands, feet = analysis.hand_distance, analysis.foot_distance
-    return {
-        **_block(analysis, analysis.status),
-        'muscle_names': analysis.muscle_names,
-        'activation': analysis.activation,
-        'force': analysis.force,
-        'coordinate_names': analysis.coordinate_names,
-        'torque': analysis.torque,
-        'reserve': analysis.reserve,
-        'pelvis_residual': analysis.pelvis_residual,
-        'transfer_position_error': np.maximum(hands, feet).max(axis=1),
-        'transfer_angle_error': np.maximum(analysis.trunk_angle, analysis.foot_angle.max(axis=1)),
-        'dual_residual': [report.dual_residual for report in analysis.reports],
-        'primal_residual': [report.primal_residual for report in analysis.reports],
-        'report': vars(analysis.report),
-    }
-
-
-def analysis_to_msg(analysis: MuscleAnalysis) -> MuscleAnalysisMsg:
+def analysis_to_msg(analysis: MuscleAnalysis) -> Message:
     """Return the message of muscle forces and the quality of the analysis."""
-    return WRITERS[MuscleAnalysisMsg].make(analysis_fields(analysis))
+    hands, feet = analysis.hand_distance, analysis.foot_distance
+    return make(
+        'MuscleAnalysis',
+        **_block(analysis, analysis.status),
+        muscle_names=analysis.muscle_names,
+        activation=analysis.activation,
+        force=analysis.force,
+        coordinate_names=analysis.coordinate_names,
+        torque=analysis.torque,
+        reserve=analysis.reserve,
+        pelvis_residual=analysis.pelvis_residual,
+        transfer_position_error=np.maximum(hands, feet).max(axis=1),
+        transfer_angle_error=np.maximum(analysis.trunk_angle, analysis.foot_angle.max(axis=1)),
+        dual_residual=[report.dual_residual for report in analysis.reports],
+        primal_residual=[report.primal_residual for report in analysis.reports],
+        report=report_to_msg(analysis.report),
+    )
 
 
-def spine_load_fields(
-    analysis: MuscleAnalysis, box_mass: float, frame_id: str = DISC
-) -> dict[str, Any]:
-    """Return the fields of the message of the L5-S1 load, with its own statuses.
+def spine_load_to_msg(analysis: MuscleAnalysis, box_mass: float, frame_id: str = DISC) -> Message:
+    """Return the message of the L5-S1 load, with its own statuses.
 
     Parameters
     ----------
@@ -117,70 +91,56 @@ def spine_load_fields(
     frame_id
         Of the disc (`disc_frame_id`).
     """
-    return {
+    return make(
+        'SpineLoad',
         **_block(analysis, analysis.spine_status, frame_id),
-        'subject': analysis.pseudonym,
-        'body_mass': analysis.body_mass,
-        'box_mass': box_mass,
-        'compression': analysis.compression,
-        'anterior_shear': analysis.anterior_shear,
-        'lateral_shear': analysis.lateral_shear,
-        'net_moment': analysis.net_moment_top_down,
-        'moment_difference': np.linalg.norm(analysis.net_moment_difference, axis=1),
-        'disc_frame': analysis.disc_frame,
-        'disc_position': analysis.disc_position,
-        'disc_orientation': analysis.disc_orientation,
-        'compression_per_degree': analysis.compression_per_degree,
-        'anterior_shear_per_degree': analysis.anterior_shear_per_degree,
-        'report': vars(analysis.spine_report),
-    }
+        subject=analysis.pseudonym,
+        body_mass=analysis.body_mass,
+        box_mass=box_mass,
+        compression=analysis.compression,
+        anterior_shear=analysis.anterior_shear,
+        lateral_shear=analysis.lateral_shear,
+        net_moment=analysis.net_moment_top_down,
+        moment_difference=np.linalg.norm(analysis.net_moment_difference, axis=1),
+        disc_frame=analysis.disc_frame,
+        disc_position=analysis.disc_position,
+        disc_orientation=analysis.disc_orientation,
+        compression_per_degree=analysis.compression_per_degree,
+        anterior_shear_per_degree=analysis.anterior_shear_per_degree,
+        report=report_to_msg(analysis.spine_report),
+    )
 
 
-def spine_load_to_msg(
-    analysis: MuscleAnalysis, box_mass: float, frame_id: str = DISC
-) -> SpineLoadMsg:
-    """Return the message of the L5-S1 load; parameters as in `spine_load_fields`."""
-    return WRITERS[SpineLoadMsg].make(spine_load_fields(analysis, box_mass, frame_id))
-
-
-def joint_reactions_fields(analysis: MuscleAnalysis) -> dict[str, Any]:
-    """Return the fields of the message of the loads of all joints."""
-    return {
-        **_block(analysis, analysis.status),
-        'subject': analysis.pseudonym,
-        'body_mass': analysis.body_mass,
-        'joint_names': analysis.joint_names,
-        'force': analysis.joint_force,
-        'moment': analysis.joint_moment,
-        'disc_frame': analysis.disc_frame,
-        'lumbar_status': analysis.spine_status,
-        'report': vars(analysis.report),
-    }
-
-
-def joint_reactions_to_msg(analysis: MuscleAnalysis) -> JointReactionsMsg:
+def joint_reactions_to_msg(analysis: MuscleAnalysis) -> Message:
     """Return the message of the loads of all joints."""
-    return WRITERS[JointReactionsMsg].make(joint_reactions_fields(analysis))
+    return make(
+        'JointReactions',
+        **_block(analysis, analysis.status),
+        subject=analysis.pseudonym,
+        body_mass=analysis.body_mass,
+        joint_names=analysis.joint_names,
+        force=analysis.joint_force,
+        moment=analysis.joint_moment,
+        disc_frame=analysis.disc_frame,
+        lumbar_status=analysis.spine_status,
+        report=report_to_msg(analysis.report),
+    )
 
 
-def torques_fields(torques: JointTorques) -> dict[str, Any]:
-    """Return the fields of the message of joint torques and strength."""
-    return {
-        **_block(torques, torques.status),
-        'joint_names': torques.joint_names,
-        'torque': torques.torque,
-        'torque_lower': torques.lower,
-        'torque_upper': torques.upper,
-    }
-
-
-def torques_to_msg(torques: JointTorques) -> JointTorquesMsg:
+def torques_to_msg(torques: JointTorques) -> Message:
     """Return the message of joint torques and strength."""
-    return WRITERS[JointTorquesMsg].make(torques_fields(torques))
+    return make(
+        'JointTorques',
+        **_block(torques, torques.status),
+        joint_names=torques.joint_names,
+        torque=torques.torque,
+        torque_lower=torques.lower,
+        torque_upper=torques.upper,
+    )
 
 
-def reactions_fields(analysis: MuscleAnalysis, frame_id: str = DISC) -> list[dict[str, Any]]:
-    """Return force of S1 on L5 and moment about the joint centre of each good sample: fields.
+def reactions_to_msg(analysis: MuscleAnalysis, frame_id: str = DISC) -> list[Message]:
+    """Return force of S1 on L5 and moment about the joint centre of each good sample.
 
     Parameters
     ----------
@@ -190,25 +150,17 @@ def reactions_fields(analysis: MuscleAnalysis, frame_id: str = DISC) -> list[dic
         Of the disc (`disc_frame_id`).
     """
     return [
-        {
-            'header': _header(float(analysis.time[k]), frame_id),
-            'wrench': {
-                'force': dict(zip('xyz', analysis.l5_s1_force[k].tolist(), strict=True)),
-                'torque': dict(zip('xyz', analysis.l5_s1_moment[k].tolist(), strict=True)),
-            },
-        }
+        make(
+            'geometry_msgs/WrenchStamped',
+            header=header(float(analysis.time[k]), frame_id),
+            wrench=make(
+                'geometry_msgs/Wrench',
+                force=vector(analysis.l5_s1_force[k]),
+                torque=vector(analysis.l5_s1_moment[k]),
+            ),
+        )
         for k in np.flatnonzero(analysis.spine_status == SolveStatus.OK).tolist()
     ]
-
-
-def reactions_to_msg(analysis: MuscleAnalysis, frame_id: str = DISC) -> list[WrenchStamped]:
-    """Return the messages of `reactions_fields`."""
-    return [WRITERS[WrenchStamped].make(each) for each in reactions_fields(analysis, frame_id)]
-
-
-def _header(time: float, frame_id: str) -> dict[str, Any]:
-    sec, nanosec = split(time)
-    return {'stamp': {'sec': sec, 'nanosec': nanosec}, 'frame_id': frame_id}
 
 
 def _block(
@@ -216,7 +168,7 @@ def _block(
 ) -> dict[str, Any]:
     """Return stamp, lift, source, clock and statuses, which all blocks have."""
     return {
-        'header': _header(float(block.time[0]), frame_id),
+        'header': header(float(block.time[0]), frame_id),
         'lift_id': block.lift_id,
         'source': _SOURCES[block.source],
         'time_from_start': block.time - block.time[0],

@@ -9,7 +9,7 @@ import time
 from collections import OrderedDict, deque
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from geometry_msgs.msg import WrenchStamped
 from lifting_interfaces.msg import (
@@ -29,9 +29,11 @@ from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 from human_model.exceptions import HumanModelError
 from human_model.named_subjects import named_subject, subject_names
 from human_model.subject import Subject
+from lifting_messages import Message
 from lifting_node import qos
 from lifting_node.cdr import CdrError
 from lifting_node.message_view import viewed
+from lifting_node.message_writer import MessageWriter
 from lifting_node.pipeline_node import PipelineNode
 from lifting_node.run import run_node
 from muscle_analyzer import conversions
@@ -43,6 +45,12 @@ from muscle_analyzer.core.recruitment.static_optimization import StaticOptimizat
 from muscle_analyzer.core.subject.muscle_strength import StrengthScaling
 from muscle_analyzer.core.subject.segment_masses import MassDistribution
 from muscle_analyzer.lift_queue import LiftQueue, WaitingLift
+
+WRITERS: Final = {
+    kind: MessageWriter(kind)
+    for kind in (MuscleAnalysis, SpineLoad, JointReactions, JointTorques, WrenchStamped)
+}
+"""By type of message; they keep the bytes of names, which do not change."""
 
 WAITING_LIFTS: Final = 100
 """Lifts kept until their person is known and the node is active."""
@@ -157,17 +165,17 @@ class MuscleAnalyzerNode(PipelineNode):
         mass = conversions.mass_in_hands(motion, self._box_mass)
         analysis = self.analyzer.analyze(motion, '', 'live', message.status)
         # First what alarms hang on.
-        spine = conversions.spine_load_fields(analysis, mass, self._disc)
+        spine = conversions.spine_load_to_msg(analysis, mass, self._disc)
         self._spine.publish(_bytes(SpineLoad, spine))
         torques = self.analyzer.joint_torques(analysis, motion)
-        self._torques.publish(_bytes(JointTorques, conversions.torques_fields(torques)))
-        self._muscles.publish(_bytes(MuscleAnalysis, conversions.analysis_fields(analysis)))
+        self._torques.publish(_bytes(JointTorques, conversions.torques_to_msg(torques)))
+        self._muscles.publish(_bytes(MuscleAnalysis, conversions.analysis_to_msg(analysis)))
         # Nobody needs these at once, and often nobody listens.
         if self._joints.get_subscription_count():
-            joints = conversions.joint_reactions_fields(analysis)
+            joints = conversions.joint_reactions_to_msg(analysis)
             self._joints.publish(_bytes(JointReactions, joints))
         if self._reaction.get_subscription_count():
-            for reaction in conversions.reactions_fields(analysis, self._disc):
+            for reaction in conversions.reactions_to_msg(analysis, self._disc):
                 self._reaction.publish(_bytes(WrenchStamped, reaction))
         self.counts['live samples'] += len(analysis)
         self.counts['live samples with good L5-S1 load'] += analysis.good_spine_samples
@@ -223,18 +231,18 @@ class MuscleAnalyzerNode(PipelineNode):
 
     def _lift_done(self, lift: WaitingLift, analysis: Analysis) -> Iterator[None]:
         """Publish the analysis of a whole lift, message by message."""
-        spine = conversions.spine_load_fields(analysis, lift.box_mass, self._disc)
+        spine = conversions.spine_load_to_msg(analysis, lift.box_mass, self._disc)
         self._spine.publish(_bytes(SpineLoad, spine))
         yield
         torques = self.analyzer.joint_torques(analysis, lift.motion)
-        self._torques.publish(_bytes(JointTorques, conversions.torques_fields(torques)))
+        self._torques.publish(_bytes(JointTorques, conversions.torques_to_msg(torques)))
         yield
         # Half a megabyte: made in one step, sent in the next.
-        muscles = _bytes(MuscleAnalysis, conversions.analysis_fields(analysis))
+        muscles = _bytes(MuscleAnalysis, conversions.analysis_to_msg(analysis))
         yield
         self._muscles.publish(muscles)
         yield
-        self._joints.publish(_bytes(JointReactions, conversions.joint_reactions_fields(analysis)))
+        self._joints.publish(_bytes(JointReactions, conversions.joint_reactions_to_msg(analysis)))
         yield
         self.get_logger().info(
             f'{lift.lift_id} {lift.source}: peak L5-S1 compression '
@@ -243,9 +251,9 @@ class MuscleAnalyzerNode(PipelineNode):
         )
 
 
-def _bytes(kind: type, fields: dict[str, Any]) -> bytes:
-    """Return a message as it is sent."""
-    return conversions.WRITERS[kind].write(fields)
+def _bytes(kind: type, message: Message) -> bytes:
+    """Return a message serialised."""
+    return WRITERS[kind].write(vars(message))
 
 
 def main(args: list[str] | None = None) -> None:

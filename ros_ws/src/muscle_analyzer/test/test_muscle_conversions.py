@@ -14,7 +14,7 @@ from lifting_interfaces.msg import SpineLoad
 from human_model.report import SolveReport, SolveStatus
 from human_model.skeleton_3d import Skeleton3D
 from human_model.subject import Subject
-from lifting_node.stamps import to_seconds
+from lifting_messages.stamps import to_seconds
 from muscle_analyzer import conversions
 from muscle_analyzer.core.loads.analysis import MuscleAnalysis
 from muscle_analyzer.core.loads.torque_limits import JointTorques

@@ -36,8 +36,10 @@ from human_model.report import SolveReport as Report  # noqa: E402
 from human_model.skeleton_2d import Skeleton2D  # noqa: E402
 from human_model.skeleton_3d import Skeleton3D  # noqa: E402
 from human_model.subject import Subject as Person  # noqa: E402
-from lifting_node import conversions, qos  # noqa: E402
-from lifting_node.stamps import to_seconds  # noqa: E402
+from lifting_messages import conversions, encode  # noqa: E402
+from lifting_messages.stamps import to_seconds  # noqa: E402
+from lifting_node import qos  # noqa: E402
+from lifting_node.ros_messages import to_ros  # noqa: E402
 
 PERSON = Person('p01', 'male', 63.5, 1.69, 25)
 NAMESPACE = 'muscle_node_test'
@@ -125,7 +127,7 @@ class Station:
         """Publish once there is a reader."""
         publisher = self.publishers[topic]
         self.until(lambda: publisher.get_subscription_count() > 0, f'reader of {topic}')
-        publisher.publish(message)
+        publisher.publish(encode(message) if hasattr(message, '__msgtype__') else message)
 
     def take(self, topic, since, number=1):
         """Wait for messages of a topic with stamps from `since` on; return them, oldest first."""
@@ -233,7 +235,8 @@ def test_lifts_are_analysed_with_their_source(station):
         PredictedLift(lift_id='lift_007', subject='p01', box_mass=12.0) for _ in range(2)
     )
     failed.report.status = SolveReport.PREDICTOR_INFEASIBLE
-    good.motion = conversions.motion_to_msg(flat, conversions.MotionQuality.exact(2))
+    block = conversions.motion_to_msg(flat, conversions.MotionQuality.exact(2))
+    good.motion = to_ros(block, BodyMotion)
     station.send('predicted_lift', failed)
     station.send('predicted_lift', good)
     for topic in ('spine_load', 'joint_torques', 'muscle_analysis'):

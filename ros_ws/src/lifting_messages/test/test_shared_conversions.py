@@ -4,13 +4,12 @@
 
 import numpy as np
 import pytest
-from lifting_interfaces.msg import SolveReport as SolveReportMsg
 
 from human_model.exceptions import MotionError, SubjectError
 from human_model.motion import FRAMES, POINTS, BodyMotion, Lift
 from human_model.report import SolveReport, SolveStatus
 from human_model.subject import Calibration, Subject
-from lifting_node import conversions
+from lifting_messages import conversions, message_type
 
 
 def make_motion(n=3):
@@ -123,4 +122,4 @@ def test_a_subject_message_with_an_impossible_mass_is_refused():
 def test_status_codes_of_message_and_model_are_the_same():
     """A code never means one thing in a bag and another in the code."""
     for status in SolveStatus:
-        assert getattr(SolveReportMsg, status.name) == int(status)
+        assert getattr(message_type('SolveReport'), status.name) == int(status)

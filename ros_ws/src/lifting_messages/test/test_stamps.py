@@ -4,7 +4,7 @@
 
 import pytest
 
-from lifting_node.stamps import to_seconds, to_stamp
+from lifting_messages.stamps import to_seconds, to_stamp
 
 
 @pytest.mark.parametrize('seconds', [0.0, 0.01, 1.999999, 1_763_000_000.123456])

@@ -5,26 +5,23 @@
 from __future__ import annotations
 
 import math
-from array import array
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from lifting_interfaces.msg import BodyMotion as BodyMotionMsg
-from lifting_interfaces.msg import MeasuredLift as MeasuredLiftMsg
-from lifting_interfaces.msg import SolveReport as SolveReportMsg
-from lifting_interfaces.msg import Subject as SubjectMsg
 
 from human_model.motion import BodyMotion, Lift
 from human_model.report import SolveReport, SolveStatus
 from human_model.subject import Calibration, Subject
 from human_model.typing import Array
-from lifting_node.stamps import to_seconds, to_stamp
+from lifting_messages.message_types import Message, make, message_type
+from lifting_messages.stamps import header, to_seconds
 
 #: Frame of all Cartesian values: x forward, y left, z up, on the floor.
 LABORATORY = 'world'
 
-_SEX = {'male': SubjectMsg.SEX_MALE, 'female': SubjectMsg.SEX_FEMALE}
+_SUBJECT = message_type('Subject')
+_SEX = {'male': _SUBJECT.SEX_MALE, 'female': _SUBJECT.SEX_FEMALE}
 _SEX_NAME = {code: name for name, code in _SEX.items()}
 
 
@@ -54,14 +51,27 @@ class MotionQuality:
         return cls(0.0, np.zeros(n, np.int64), nothing, nothing)
 
 
-def flat(values: npt.ArrayLike) -> array[float]:
-    """Return values row-major in the form that rclpy takes without looking at each element."""
-    return array('d', np.asarray(values, np.float64).tobytes())
+def flat(values: npt.ArrayLike) -> Array:
+    """Return values row-major as messages have them, shape (n,)."""
+    return np.asarray(values, np.float64).reshape(-1)
 
 
-def report_to_msg(report: SolveReport) -> SolveReportMsg:
+def point(values: Array) -> Message:
+    """Return a place [m] (3,) as a message."""
+    x, y, z = values.tolist()
+    return make('geometry_msgs/Point', x=x, y=y, z=z)
+
+
+def vector(values: Array) -> Message:
+    """Return a vector (3,) as a message."""
+    x, y, z = values.tolist()
+    return make('geometry_msgs/Vector3', x=x, y=y, z=z)
+
+
+def report_to_msg(report: SolveReport) -> Message:
     """Return the message of a solve report."""
-    return SolveReportMsg(
+    return make(
+        'SolveReport',
         status=int(report.status),
         message=report.message,
         iterations=int(report.iterations),
@@ -73,7 +83,7 @@ def report_to_msg(report: SolveReport) -> SolveReportMsg:
     )
 
 
-def report_from_msg(message: SolveReportMsg) -> SolveReport:
+def report_from_msg(message: Message) -> SolveReport:
     """Return the solve report of a message; an unknown status raises ValueError."""
     return SolveReport(
         SolveStatus(message.status),
@@ -87,7 +97,7 @@ def report_from_msg(message: SolveReportMsg) -> SolveReport:
     )
 
 
-def subject_from_msg(message: SubjectMsg) -> Subject:
+def subject_from_msg(message: Message) -> Subject:
     """Return the subject of a message.
 
     Raises
@@ -119,11 +129,12 @@ def subject_from_msg(message: SubjectMsg) -> Subject:
     )
 
 
-def subject_to_msg(subject: Subject, stamp: float, marker_set: str, source: str) -> SubjectMsg:
+def subject_to_msg(subject: Subject, stamp: float, marker_set: str, source: str) -> Message:
     """Return the message of a subject, its calibration included."""
     calibration = subject.calibration
     lengths = {**(calibration.lengths if calibration else {}), **subject.lengths}
-    message = SubjectMsg(
+    message = make(
+        'Subject',
         pseudonym=subject.pseudonym,
         sex=_SEX[subject.sex],
         mass=subject.mass,
@@ -131,12 +142,12 @@ def subject_to_msg(subject: Subject, stamp: float, marker_set: str, source: str)
         age=subject.age,
         strength_z=subject.strength_z,
         segment_length_names=list(lengths),
-        segment_lengths=list(lengths.values()),
+        segment_lengths=flat(list(lengths.values())),
         marker_set=marker_set,
         calibration_rms=float('nan'),
         source=source,
     )
-    message.header.stamp = to_stamp(stamp)
+    message.header = header(stamp)
     if calibration is not None:
         message.marker_names = list(calibration.marker_names)
         message.marker_segments = list(calibration.segments)
@@ -145,9 +156,11 @@ def subject_to_msg(subject: Subject, stamp: float, marker_set: str, source: str)
     return message
 
 
-def motion_to_msg(motion: BodyMotion, quality: MotionQuality) -> BodyMotionMsg:
+def motion_to_msg(motion: BodyMotion, quality: MotionQuality) -> Message:
     """Return the message of a block of body motion."""
-    message = BodyMotionMsg(
+    return make(
+        'BodyMotion',
+        header=header(float(motion.time[0]), LABORATORY),
         skeleton=motion.skeleton,
         time_from_start=flat(motion.time - motion.time[0]),
         coordinate_names=list(motion.coordinates),
@@ -164,16 +177,13 @@ def motion_to_msg(motion: BodyMotion, quality: MotionQuality) -> BodyMotionMsg:
         hand_force=flat(motion.hand_force),
         box_position=flat(motion.box_position),
         filter_delay=float(quality.filter_delay),
-        status=array('H', np.asarray(quality.status, np.uint16).tobytes()),
+        status=np.asarray(quality.status, np.uint16),
         marker_rms=flat(quality.marker_rms),
         marker_max=flat(quality.marker_max),
     )
-    message.header.stamp = to_stamp(float(motion.time[0]))
-    message.header.frame_id = LABORATORY
-    return message
 
 
-def motion_from_msg(message: BodyMotionMsg) -> BodyMotion:
+def motion_from_msg(message: Message) -> BodyMotion:
     """Return the block of body motion of a message.
 
     Raises
@@ -184,7 +194,7 @@ def motion_from_msg(message: BodyMotionMsg) -> BodyMotion:
     time = to_seconds(message.header.stamp) + np.asarray(message.time_from_start)
     n = time.size
 
-    def shaped(values: array[float], *tail: int) -> Array:
+    def shaped(values: npt.ArrayLike, *tail: int) -> Array:
         data = np.asarray(values, np.float64)
         shape = (n, *tail)
         return data.reshape(shape) if data.size == math.prod(shape) else data
@@ -211,7 +221,7 @@ def motion_from_msg(message: BodyMotionMsg) -> BodyMotion:
     )
 
 
-def quality_from_msg(message: BodyMotionMsg) -> MotionQuality:
+def quality_from_msg(message: Message) -> MotionQuality:
     """Return what the tracker said of each sample of a block."""
     return MotionQuality(
         message.filter_delay,
@@ -221,9 +231,11 @@ def quality_from_msg(message: BodyMotionMsg) -> MotionQuality:
     )
 
 
-def lift_to_msg(lift: Lift, quality: MotionQuality, subject: Subject) -> MeasuredLiftMsg:
+def lift_to_msg(lift: Lift, quality: MotionQuality, subject: Subject) -> Message:
     """Return the message of a measured lift."""
-    message = MeasuredLiftMsg(
+    return make(
+        'MeasuredLift',
+        header=header(lift.start, LABORATORY),
         lift_id=lift.lift_id,
         subject=subject.pseudonym,
         body_mass=subject.mass,
@@ -232,12 +244,9 @@ def lift_to_msg(lift: Lift, quality: MotionQuality, subject: Subject) -> Measure
         motion=motion_to_msg(lift.motion, quality),
         report=report_to_msg(lift.report),
     )
-    message.header.stamp = to_stamp(lift.start)
-    message.header.frame_id = LABORATORY
-    return message
 
 
-def lift_from_msg(message: MeasuredLiftMsg) -> Lift:
+def lift_from_msg(message: Message) -> Lift:
     """Return the measured lift of a message."""
     start = to_seconds(message.header.stamp)
     return Lift(
