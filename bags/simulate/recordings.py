@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -29,7 +30,7 @@ from lifting_recordings.bag_writer import START_TIME_NS, BagWriter, in_order
 from lifting_recordings.importer import marker_stream, plate_stream, pose_stream
 from lifting_recordings.messages import MarkerCalibration, subject_message, task_message
 from lifting_recordings.recording import Recording
-from lifting_recordings.subject_file import SubjectEntry, TaskEntry
+from lifting_recordings.subject_file import TaskEntry
 from motion_tracker.core.calibration import calibrate
 from motion_tracker.core.marker_set import load_marker_set
 
@@ -79,18 +80,10 @@ class Session:
         seen = marker_places(self.stage, self.body, self.markers, q, self.rest, _STATIC_SEED)
         return seen, time, q
 
-    def subject_entry(self) -> SubjectEntry:
-        """Return the subject as a person would enter it."""
+    def subject(self) -> Subject:
+        """Return the person without the measured lengths, which the calibration has."""
         subject: Subject = self.body.subject
-        return SubjectEntry(
-            pseudonym=subject.pseudonym,
-            sex=1 if subject.sex == 'male' else 2,
-            mass=subject.mass,
-            stature=subject.stature,
-            age=subject.age,
-            strength_z=subject.strength_z,
-            source=_SOURCE,
-        )
+        return replace(subject, lengths={}, calibration=None)
 
     def calibration(self) -> MarkerCalibration:
         """Return the calibration of the static trial."""
@@ -171,7 +164,7 @@ class Session:
         writer.topic('subject', 'lifting_interfaces/msg/Subject', transient_local=True)
         writer.topic('task', 'lifting_interfaces/msg/Task', transient_local=True)
         subject = subject_message(
-            writer, START_TIME_NS, self.subject_entry(), self.stage.marker_set, calibration
+            writer, START_TIME_NS, self.subject(), _SOURCE, self.stage.marker_set, calibration
         )
         return iter(
             (

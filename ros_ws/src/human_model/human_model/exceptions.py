@@ -29,3 +29,7 @@ class ChainError(HumanModelError):
 
 class StrengthError(HumanModelError):
     """A joint strength is asked for that the tables do not hold."""
+
+
+class FieldError(HumanModelError):
+    """A field of a file is missing, unknown or has a wrong value."""

@@ -25,13 +25,12 @@ def _run(options: argparse.Namespace) -> int:
     # Loads for long; the other commands need none of it.
     from human_model.exceptions import HumanModelError
     from human_model.urdf import person_urdf
-    from lifting_recordings.static_trial import person
     from lifting_recordings.subject_file import read_person
 
-    entry = read_person(options.subject)
-    output = options.output or Path(f'{entry.pseudonym}.urdf')
+    person = read_person(options.subject)
+    output = options.output or Path(f'{person.pseudonym}.urdf')
     try:
-        text = person_urdf(person(entry))
+        text = person_urdf(person)
     except HumanModelError as error:
         raise SessionError(f'{options.subject}: {error}') from error
     try:

@@ -37,6 +37,6 @@ def test_the_file_is_named_after_the_pseudonym(tmp_path, monkeypatch):
 
 def test_bad_input_is_named(tmp_path, capsys):
     assert main(['urdf', str(written(tmp_path, mass=6260))]) == 1
-    assert 'subject.mass: 6260 is outside' in capsys.readouterr().err
+    assert 'subject.mass: 6260 kg is outside' in capsys.readouterr().err
     assert main(['urdf', str(written(tmp_path)), '-o', str(tmp_path / 'no' / 'p.urdf')]) == 1
     assert 'cannot be written' in capsys.readouterr().err

@@ -220,7 +220,7 @@ def _latched(
     writer.topic('task', 'lifting_interfaces/msg/Task', transient_local=True)
     task: TaskEntry = entry.task
     subject = subject_message(
-        writer, stamp_ns, entry.subject, entry.recording.marker_set, calibration
+        writer, stamp_ns, entry.subject, entry.source, entry.recording.marker_set, calibration
     )
     return iter(
         (

@@ -10,9 +10,12 @@ from typing import Any
 
 import numpy as np
 
+from human_model.subject import Subject
 from human_model.typing import Array
 from lifting_recordings.bag_writer import BagWriter
-from lifting_recordings.subject_file import SubjectEntry, TaskEntry
+from lifting_recordings.subject_file import TaskEntry
+
+_SEX = {'male': 1, 'female': 2}
 
 
 @dataclass(frozen=True)
@@ -44,7 +47,8 @@ class MarkerCalibration:
 def subject_message(
     writer: BagWriter,
     stamp_ns: int,
-    entry: SubjectEntry,
+    subject: Subject,
+    source: str,
     marker_set: str,
     calibration: MarkerCalibration | None,
 ) -> Any:
@@ -56,8 +60,10 @@ def subject_message(
         Makes the messages.
     stamp_ns : int
         [ns].
-    entry : SubjectEntry
-        Who.
+    subject : Subject
+        The person.
+    source : str
+        What was measured of the person and what was assumed.
     marker_set : str
         Name of the marker set of the recording; '' if none is named.
     calibration : MarkerCalibration or None
@@ -65,16 +71,16 @@ def subject_message(
     """
     found = calibration.segment_lengths if calibration else {}
     # What a person measured takes precedence over what the static trial suggests.
-    merged = {**found, **entry.segment_lengths}
+    merged = {**found, **subject.lengths}
     return writer.make(
         'lifting_interfaces/msg/Subject',
         header=writer.header(stamp_ns, ''),
-        pseudonym=entry.pseudonym,
-        sex=entry.sex,
-        mass=entry.mass,
-        stature=entry.stature,
-        age=entry.age,
-        strength_z=entry.strength_z,
+        pseudonym=subject.pseudonym,
+        sex=_SEX[subject.sex],
+        mass=subject.mass,
+        stature=subject.stature,
+        age=subject.age,
+        strength_z=subject.strength_z,
         segment_length_names=list(merged),
         segment_lengths=np.array(list(merged.values()), dtype=np.float64),
         marker_set=calibration.marker_set if calibration else marker_set,
@@ -86,7 +92,7 @@ def subject_message(
             else np.zeros(0)
         ),
         calibration_rms=calibration.rms if calibration else float('nan'),
-        source=entry.source,
+        source=source,
     )
 
 

@@ -28,7 +28,6 @@ from human_model.typing import Array
 from lifting_recordings.exceptions import ConventionError
 from lifting_recordings.messages import MarkerCalibration
 from lifting_recordings.recording import Plate, Recording, centre_of_pressure
-from lifting_recordings.static_trial import person
 from lifting_recordings.subject_file import QUIET_STANDING, SubjectFile
 from motion_tracker.core.exceptions import MotionTrackerError
 from motion_tracker.core.filters import zero_phase
@@ -135,7 +134,7 @@ def _offsets(
     recording: Recording, entry: SubjectFile, calibration: MarkerCalibration | None
 ) -> tuple[PlateOffset, PlateOffset, float]:
     """Return the offsets by the musculoskeletal model and by the skeleton, and the time seen."""
-    subject = person(entry.subject)
+    subject = entry.subject
     if calibration is not None:
         subject = replace(
             subject,

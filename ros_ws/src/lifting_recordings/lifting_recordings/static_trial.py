@@ -5,35 +5,13 @@
 from __future__ import annotations
 
 from human_model.exceptions import HumanModelError
-from human_model.subject import Subject
 from lifting_recordings.exceptions import StaticTrialError, SubjectFileError
 from lifting_recordings.messages import MarkerCalibration
 from lifting_recordings.recording import Recording
-from lifting_recordings.subject_file import SubjectEntry, SubjectFile
+from lifting_recordings.subject_file import SubjectFile
 from motion_tracker.core.calibration import calibrate
 from motion_tracker.core.exceptions import MotionTrackerError
 from motion_tracker.core.marker_set import load_marker_set
-
-_SEX = {1: 'male', 2: 'female'}
-
-
-def person(who: SubjectEntry) -> Subject:
-    """Return the person of a subject file as the models know persons.
-
-    Raises
-    ------
-    HumanModelError
-        A measure is out of the models' range.
-    """
-    return Subject(
-        who.pseudonym,
-        _SEX[who.sex],
-        who.mass,
-        who.stature,
-        who.age,
-        who.strength_z,
-        dict(who.segment_lengths),
-    )
 
 
 def calibrate_markers(
@@ -62,7 +40,7 @@ def calibrate_markers(
         )
     try:
         marker_set = load_marker_set(name)
-        subject = person(entry.subject)
+        subject = entry.subject
         known = [i for i, marker in enumerate(trial.names) if marker in marker_set.names]
         found = calibrate(
             marker_set, [trial.names[i] for i in known], trial.markers[:, known], subject

@@ -41,35 +41,17 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
-import yaml
-
+from human_model.fields import Fields
+from human_model.subject import LENGTH_RANGE, RANGES, SEXES, Subject
 from lifting_recordings.exceptions import SubjectFileError
 
-# Adults: outside these a number is taken for a unit error, not for a person.
-_RANGES = {'mass': (30.0, 250.0), 'stature': (1.2, 2.3), 'age': (16.0, 100.0)}
-_SEXES = {'male': 1, 'female': 2}
 _COUPLINGS = {'good': 1, 'fair': 2, 'poor': 3}
 _NAN3 = (math.nan, math.nan, math.nan)
 
 
 #: Where the plates are: as the file says, or as quiet standing says (see `plate_registration`).
 AS_RECORDED, QUIET_STANDING = 'as_recorded', 'quiet_standing'
-
-
-@dataclass(frozen=True)
-class SubjectEntry:
-    """Fields of lifting_interfaces/Subject that a person enters; units as in the message."""
-
-    pseudonym: str
-    sex: int
-    mass: float
-    stature: float
-    age: float
-    strength_z: float = 0.0
-    segment_lengths: Mapping[str, float] = field(default_factory=dict)
-    source: str = ''
 
 
 @dataclass(frozen=True)
@@ -104,89 +86,24 @@ class RecordingEntry:
 
 @dataclass(frozen=True)
 class SubjectFile:
-    """The whole file."""
+    """The whole file; `source` states what was measured of the person and what was assumed."""
 
     path: Path
-    subject: SubjectEntry
+    subject: Subject
+    source: str
     task: TaskEntry
     recording: RecordingEntry
 
 
-class _Section:
-    """One mapping of the file; every access checks and names the field."""
+class _Section(Fields):
+    """One mapping of the file."""
 
-    def __init__(self, path: Path, name: str, data: object) -> None:
-        if not isinstance(data, dict):
-            raise SubjectFileError(f'{path}: section {name!r} is missing or not a mapping')
-        self._path, self._name = path, name
-        self._data: dict[str, Any] = dict(data)
-
-    def error(self, key: str, problem: str) -> SubjectFileError:
-        return SubjectFileError(f'{self._path}: {self._name}.{key}: {problem}')
-
-    def take(self, key: str, *default: object) -> Any:
-        if key in self._data:
-            return self._data.pop(key)
-        if default:
-            return default[0]
-        raise self.error(key, 'is missing')
-
-    def number(self, key: str, *default: float) -> float:
-        value = self.take(key, *default)
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            raise self.error(key, f'expected a number, found {value!r}')
-        if not math.isfinite(value):
-            raise self.error(key, f'is {value}')
-        if key in _RANGES and not _RANGES[key][0] <= value <= _RANGES[key][1]:
-            raise self.error(key, f'{value:g} is outside {_RANGES[key]}')
-        return float(value)
-
-    def at_least_zero(self, key: str, *default: float) -> float:
-        value = self.number(key, *default)
-        if value < 0.0:
-            raise self.error(key, f'{value:g} is negative')
-        return value
-
-    def text(self, key: str, *default: str) -> str:
-        value = self.take(key, *default)
-        if not isinstance(value, str):
-            raise self.error(key, f'expected a text, found {value!r}')
-        return value.strip()
-
-    def flag(self, key: str, default: bool) -> bool:
-        value = self.take(key, default)
-        if not isinstance(value, bool):
-            raise self.error(key, f'expected true or false, found {value!r}')
-        return value
-
-    def choice(self, key: str, choices: Mapping[str, int]) -> int:
-        value = self.take(key)
-        if value not in choices:
-            raise self.error(key, f'{value!r} is not one of {", ".join(choices)}')
-        return choices[value]
+    ERROR = SubjectFileError
 
     def triple(self, key: str, *default: tuple[float, float, float]) -> tuple[float, float, float]:
-        return self.as_triple(key, self.take(key, *default))
-
-    def as_triple(self, key: str, value: object) -> tuple[float, float, float]:
-        if not isinstance(value, list | tuple) or len(value) != 3:
-            raise self.error(key, f'expected three numbers, found {value!r}')
-        if any(isinstance(v, bool) or not isinstance(v, int | float) for v in value):
-            raise self.error(key, f'expected three numbers, found {value!r}')
-        return (float(value[0]), float(value[1]), float(value[2]))
-
-    def mapping(self, key: str) -> dict[str, Any]:
-        value = self.take(key, {})
-        if not isinstance(value, dict):
-            raise self.error(key, f'expected a mapping, found {value!r}')
-        return {str(k): v for k, v in value.items()}
-
-    def texts(self, key: str) -> dict[str, str]:
-        return {k: str(v) for k, v in self.mapping(key).items()}
-
-    def finish(self) -> None:
-        if self._data:
-            raise self.error(next(iter(self._data)), 'is not a known field')
+        """Take three numbers."""
+        x, y, z = self.numbers(key, 3, *default)
+        return x, y, z
 
 
 def read_subject_file(path: str | Path) -> SubjectFile:
@@ -198,54 +115,45 @@ def read_subject_file(path: str | Path) -> SubjectFile:
         Naming file, field and value.
     """
     path = Path(path)
-    whole = _whole(path)
-    subject = _subject(_Section(path, 'subject', whole.take('subject', None)))
-    task = _task(_Section(path, 'task', whole.take('task', None)))
-    recording = _recording(_Section(path, 'recording', whole.take('recording', {})))
+    whole = _Section.read(path)
+    subject, source = _subject(whole.section('subject'))
+    task = _task(whole.section('task'))
+    recording = _recording(whole.section('recording', {}))
     whole.finish()
-    return SubjectFile(path, subject, task, recording)
+    return SubjectFile(path, subject, source, task, recording)
 
 
-def read_person(path: str | Path) -> SubjectEntry:
-    """Read only who it is: section `subject` of a subject file or of a task file.
+def read_person(path: str | Path) -> Subject:
+    """Read the person only: section `subject` of a subject file or of a task file.
 
     Raises
     ------
     SubjectFileError
         Naming file, field and value.
     """
-    path = Path(path)
-    return _subject(_Section(path, 'subject', _whole(path).take('subject', None)))
+    return _subject(_Section.read(Path(path)).section('subject'))[0]
 
 
-def _whole(path: Path) -> _Section:
-    try:
-        data = yaml.safe_load(path.read_text(encoding='utf-8'))
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
-        raise SubjectFileError(f'{path}: cannot be read: {error}') from error
-    return _Section(path, 'file', data)
-
-
-def _subject(section: _Section) -> SubjectEntry:
+def _subject(section: _Section) -> tuple[Subject, str]:
     pseudonym = section.text('pseudonym')
     if not pseudonym:
         raise section.error('pseudonym', 'is empty')
-    lengths = section.mapping('segment_lengths')
-    for name, value in lengths.items():
-        if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < 2.0:
-            raise section.error(f'segment_lengths.{name}', f'{value!r} is not a length in metres')
-    entry = SubjectEntry(
+    sex = section.text('sex')
+    if sex not in SEXES:
+        raise section.error('sex', f'{sex!r} is not one of {", ".join(SEXES)}')
+    lengths = section.section('segment_lengths', {})
+    subject = Subject(
         pseudonym=pseudonym,
-        sex=section.choice('sex', _SEXES),
-        mass=section.number('mass'),
-        stature=section.number('stature'),
-        age=section.number('age'),
-        strength_z=section.number('strength_z', 0.0),
-        segment_lengths={k: float(v) for k, v in lengths.items()},
-        source=section.text('source', ''),
+        sex=sex,
+        mass=section.within('mass', RANGES['mass']),
+        stature=section.within('stature', RANGES['stature']),
+        age=section.within('age', RANGES['age']),
+        strength_z=section.within('strength_z', RANGES['strength_z'], 0.0),
+        lengths={name: lengths.within(name, (*LENGTH_RANGE, 'm')) for name in lengths.names()},
     )
+    source = section.text('source', '')
     section.finish()
-    return entry
+    return subject, source
 
 
 def _task(section: _Section) -> TaskEntry:
@@ -275,9 +183,10 @@ def _recording(section: _Section) -> RecordingEntry:
     emg = section.take('emg', None)
     if emg is not None and not isinstance(emg, list):
         raise section.error('emg', f'expected a list of channel names, found {emg!r}')
-    box = section.mapping('box_markers')
-    if box and len(box) < 3:
-        raise section.error('box_markers', f'{len(box)} markers do not fix a box; 3 are needed')
+    box = section.section('box_markers', {})
+    names = box.names()
+    if 0 < len(names) < 3:
+        raise section.error('box_markers', f'{len(names)} markers do not fix a box; 3 are needed')
     registration = section.text('plate_registration', AS_RECORDED)
     if registration not in (AS_RECORDED, QUIET_STANDING):
         raise section.error(
@@ -285,11 +194,15 @@ def _recording(section: _Section) -> RecordingEntry:
         )
     entry = RecordingEntry(
         marker_set=section.text('marker_set', ''),
-        rename=section.texts('rename'),
-        roles=section.texts('roles'),
-        box_markers={k: section.as_triple(f'box_markers.{k}', v) for k, v in box.items()},
+        rename=_texts(section, 'rename'),
+        roles=_texts(section, 'roles'),
+        box_markers={name: box.triple(name) for name in names},
         emg=None if emg is None else tuple(str(name) for name in emg),
         plate_registration=registration,
     )
     section.finish()
     return entry
+
+
+def _texts(section: _Section, key: str) -> dict[str, str]:
+    return {name: str(value) for name, value in section.mapping(key).items()}

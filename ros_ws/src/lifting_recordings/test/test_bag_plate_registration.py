@@ -12,7 +12,6 @@ from human_model.skeleton_3d import Skeleton3D
 from lifting_recordings.exceptions import ConventionError, SubjectFileError
 from lifting_recordings.plate_registration import moved, offset_of, register_plates
 from lifting_recordings.recording import Plate, Recording, centre_of_pressure
-from lifting_recordings.static_trial import person
 from lifting_recordings.subject_file import read_subject_file
 from motion_tracker.core.marker_model import from_anthropometry
 from motion_tracker.core.marker_set import load_marker_set
@@ -34,7 +33,7 @@ def entry(standing, tmp_path):
 @pytest.fixture
 def recording(entry):
     """Return a person who stands like a statue over its centre of mass."""
-    subject = person(entry.subject)
+    subject = entry.subject
     skeleton = Skeleton3D.of(subject)
     q = skeleton.standing()
     model = from_anthropometry(load_marker_set(MARKER_SET), subject)

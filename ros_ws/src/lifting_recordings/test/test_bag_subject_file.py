@@ -45,8 +45,8 @@ def written(tmp_path, **changes):
 
 def test_whole_file(tmp_path):
     entry = read_subject_file(written(tmp_path))
-    assert entry.subject.sex == 1
-    assert entry.subject.segment_lengths == {'thigh': 0.41}
+    assert entry.subject.sex == 'male'
+    assert entry.subject.lengths == {'thigh': 0.41}
     assert entry.task.box_size == (0.238, 0.305, 0.127)
     assert entry.recording.marker_set == 'plug_in_gait_58'
     assert entry.task.simulated is False
@@ -55,21 +55,21 @@ def test_whole_file(tmp_path):
 @pytest.mark.parametrize(
     ('change', 'message'),
     [
-        ({'subject__mass': 62600}, r'subject\.mass: 62600 is outside'),
-        ({'subject__stature': 168}, r'subject\.stature: 168 is outside'),
-        ({'subject__mass': 'heavy'}, r"subject\.mass: expected a number, found 'heavy'"),
-        ({'subject__mass': float('nan')}, r'subject\.mass: is nan'),
+        ({'subject__mass': 62600}, r'subject\.mass: 62600 kg is outside'),
+        ({'subject__stature': 168}, r'subject\.stature: 168 m is outside'),
+        ({'subject__mass': 'heavy'}, r"subject\.mass: a number is needed, found 'heavy'"),
+        ({'subject__mass': float('nan')}, r'subject\.mass: a finite number is needed, found nan'),
         ({'subject__age': None}, r'subject\.age: is missing'),
         ({'subject__sex': 'm'}, r"subject\.sex: 'm' is not one of male, female"),
         ({'subject__name': 'Jane'}, r'subject\.name: is not a known field'),
         ({'subject__pseudonym': ' '}, r'subject\.pseudonym: is empty'),
         ({'subject__segment_lengths': {'thigh': 410}}, r'segment_lengths\.thigh: 410'),
         ({'task__box_size': None}, r'task\.box_size: is missing'),
-        ({'task__box_size': [1.0, 2.0]}, r'task\.box_size: expected three numbers'),
+        ({'task__box_size': [1.0, 2.0]}, r'task\.box_size: 3 numbers are needed'),
         ({'task__box_size': [0.0, 0.3, 0.1]}, r'task\.box_size: .* is not positive'),
         ({'task__box_mass': -1.0}, r'task\.box_mass: -1 is negative'),
         ({'task__coupling': 'bad'}, r"task\.coupling: 'bad' is not one of"),
-        ({'task__simulated': 'yes please'}, r'task\.simulated: expected true or false'),
+        ({'task__simulated': 'yes please'}, r'task\.simulated: true or false is needed'),
         ({'recording__box_markers': {'a': [0, 0, 0]}}, r'box_markers: 1 markers'),
     ],
 )
@@ -86,5 +86,5 @@ def test_no_yaml_and_no_file(tmp_path):
     with pytest.raises(SubjectFileError, match='cannot be read'):
         read_subject_file(path)
     path.write_text('just words')
-    with pytest.raises(SubjectFileError, match="'file' is missing or not a mapping"):
+    with pytest.raises(SubjectFileError, match="file: a mapping is needed, found 'just words'"):
         read_subject_file(path)

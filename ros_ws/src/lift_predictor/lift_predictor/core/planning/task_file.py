@@ -40,7 +40,7 @@ from typing import Final
 from human_model.exceptions import HumanModelError
 from human_model.subject import Subject
 from lift_predictor.core.exceptions import PlanError
-from lift_predictor.core.planning.fields import Fields, read_yaml
+from lift_predictor.core.planning.fields import Fields
 from lift_predictor.core.planning.plan_task import DEFAULT_DURATION, PlanTask, Point
 from lift_predictor.core.planning.technique import FREE
 
@@ -85,7 +85,7 @@ def read_task_file(path: str | Path) -> TaskFile:
         Naming file, field and value.
     """
     path = Path(path)
-    whole = read_yaml(path)
+    whole = Fields.read(path)
     subject = read_subject(whole.section('subject'))
     task = read_task(whole.section('task'), path.stem)
     work = _work(whole.section('work')) if 'work' in whole else Work()

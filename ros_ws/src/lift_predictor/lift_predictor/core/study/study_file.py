@@ -38,7 +38,7 @@ import numpy as np
 
 from human_model.subject import Subject
 from lift_predictor.core.exceptions import PlanError, TaskError
-from lift_predictor.core.planning.fields import Fields, read_yaml
+from lift_predictor.core.planning.fields import Fields
 from lift_predictor.core.planning.plan_task import PlanTask
 from lift_predictor.core.planning.task_file import read_task, read_task_file
 from lift_predictor.core.problem.maximum_weight import Weighting
@@ -86,7 +86,7 @@ def read_study(path: str | Path) -> Study:
         Naming file, field and value.
     """
     path = Path(path)
-    whole = read_yaml(path)
+    whole = Fields.read(path)
     name = whole.text('name', path.stem)
     subjects = read_subjects(whole.section('subjects'), path.parent)
     tasks = tuple(
