@@ -12,21 +12,25 @@ import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from human_model.exceptions import LiftingError
 from lifting_cli import (
     compare_command,
     emg_command,
+    model_command,
     opensim_command,
     planning_command,
     study_command,
     urdf_command,
 )
-from lifting_cli.graph_errors import GraphError, SessionError
+from lifting_cli.graph_errors import SessionError
 from lifting_cli.interruption import stopped_by_signals
 from lifting_cli.node_process import discovery, node_processes
-from lifting_recordings.exceptions import BagError
 
 #: The recording that `lift demo` plays.
 DEMO_BAG = 'symmetric_12kg'
+
+#: Missing without ROS 2, or without the built messages.
+ROS_MODULES = {'ament_index_python', 'lifting_interfaces', 'rclpy', 'std_srvs'}
 
 #: Exit code after an interrupt from the keyboard, as shells have it (128 + SIGINT).
 STOPPED = 130
@@ -38,8 +42,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
     handler: Callable[[argparse.Namespace], int] = options.handler
     try:
         return handler(options)
-    except (BagError, GraphError) as error:
+    except LiftingError as error:
         print(f'lift {options.command}: {error}', file=sys.stderr)
+        return 1
+    except ModuleNotFoundError as error:
+        if (error.name or '').split('.')[0] not in ROS_MODULES:
+            raise
+        print(
+            f'lift {options.command}: needs ROS 2, and {error.name} is not installed; use the '
+            'environment of `make setup` or a ROS 2 workspace. `lift run --offline` needs no ROS.',
+            file=sys.stderr,
+        )
         return 1
     except KeyboardInterrupt:
         print(f'lift {options.command}: stopped', file=sys.stderr)
@@ -119,6 +132,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     report.set_defaults(handler=_report)
 
+    model_command.add_to(commands)
     compare_command.add_to(commands)
     opensim_command.add_to(commands)
     emg_command.add_to(commands)

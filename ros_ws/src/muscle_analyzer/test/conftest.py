@@ -17,7 +17,7 @@ from muscle_analyzer.core.multibody.model import MultibodyModel, compile_model
 from muscle_analyzer.core.opensim_bridge.derivatives import differentiate, smooth
 from muscle_analyzer.core.opensim_bridge.motion_on_model import motion_on_model
 from muscle_analyzer.core.osim.reader import read_osim
-from muscle_analyzer.core.subject.model import lifting_model_path
+from muscle_analyzer.core.subject.model_file import lifting_model_path
 
 SQUATS = Path(__file__).resolve().parents[5] / 'shared' / 'data' / 'squats_bodyweight'
 

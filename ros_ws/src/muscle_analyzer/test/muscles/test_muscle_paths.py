@@ -21,7 +21,7 @@ from muscle_analyzer.core.muscles.paths import (
     posture_paths,
 )
 from muscle_analyzer.core.osim.reader import read_osim
-from muscle_analyzer.core.subject.model import lifting_model_path
+from muscle_analyzer.core.subject.model_file import lifting_model_path
 
 HERE = Path(__file__).parents[1]
 SQUATS = HERE.parents[4] / 'shared' / 'data' / 'squats_bodyweight' / 'opensim46_reference'

@@ -22,7 +22,8 @@ from muscle_analyzer.core.muscles.paths import posture_paths
 from muscle_analyzer.core.osim.model import OsimModel
 from muscle_analyzer.core.osim.model_cache import load_model
 from muscle_analyzer.core.recruitment.static_optimization import MuscleBalance
-from muscle_analyzer.core.subject.model import SubjectModel, lifting_model_path, subject_model
+from muscle_analyzer.core.subject.model import SubjectModel, subject_model
+from muscle_analyzer.core.subject.model_file import lifting_model_path
 from muscle_analyzer.core.subject.muscle_strength import force_factors
 from muscle_analyzer.core.subject.segment_masses import MassDistribution, segment_masses
 

@@ -1,18 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""The musculoskeletal model of one subject: the generic model found, read, scaled and compiled."""
+"""The musculoskeletal model of one subject: the generic model read, scaled and compiled."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from importlib.util import find_spec
-from pathlib import Path
 
 import numpy as np
 
 from human_model.typing import Array
-from muscle_analyzer.core.exceptions import ModelFileError
 from muscle_analyzer.core.multibody.kinematics import body_jacobians, forward_kinematics
 from muscle_analyzer.core.multibody.model import MultibodyModel, compile_model
 from muscle_analyzer.core.muscles.path_table import path_table
@@ -22,10 +19,6 @@ from muscle_analyzer.core.subject.body_points import BodyPoints, attach_points, 
 from muscle_analyzer.core.subject.coordinate_ranges import with_published_ranges
 from muscle_analyzer.core.subject.scaling import scale_model
 from muscle_analyzer.core.subject.segment_masses import SegmentMass, with_segment_masses
-
-# The lifting full-body model (Beaucage-Gauvreau et al. 2019) as adapted in the pose2sim wheel
-# (BSD-3).
-_PACKAGE, _FILE = 'Pose2Sim', 'OpenSim_Setup/Model_Pose2Sim_muscles_flex.osim'
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,22 +37,6 @@ class SubjectModel:
     multibody: MultibodyModel
     points: BodyPoints
     factors: Mapping[str, Array]
-
-
-def lifting_model_path() -> Path:
-    """Return where the pose2sim wheel put the lifting full-body model.
-
-    Raises
-    ------
-    ModelFileError
-        If the wheel, or the file in it, is not installed.
-    """
-    spec = find_spec(_PACKAGE)
-    for place in (spec.submodule_search_locations or []) if spec else []:
-        path = Path(place) / _FILE
-        if path.is_file():
-            return path
-    raise ModelFileError(f'{_FILE} is not there: install the pose2sim wheel (pip, --no-deps)')
 
 
 def default_path_lengths(model: OsimModel) -> Array:
