@@ -39,6 +39,8 @@ from motion_tracker.core.configuration import tracker_from
 from motion_tracker.core.tracker import MotionTracker
 from muscle_analyzer import conversions as muscle_messages
 from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
+from muscle_analyzer.core.loads.muscle_model import read_generic_model
+from muscle_analyzer.core.loads.options import MuscleAnalyzerOptions
 
 Emit = Callable[[str, Any], None]
 
@@ -64,6 +66,7 @@ class OfflineGraph:
         self._task: Any = None
         self._tracker: MotionTracker | None = None
         self._predictor = LiftPredictor()
+        self._model = read_generic_model(MuscleAnalyzerOptions())
         self._analyzer: MuscleAnalyzer | None = None
         self._disc = muscle_messages.disc_frame_id(station)
         values = defaults('injury_monitor')
@@ -110,13 +113,14 @@ class OfflineGraph:
             return
         self._monitor.configure(monitor_messages.work_from_msg(self._subject, self._task))
         subject = subject_from_msg(self._subject)
-        self._tracker = tracker_from(
+        tracker = tracker_from(
             self._tracker_values,
             subject,
             self._subject.marker_set,
             *inputs.task_from_msg(self._task),
         )
-        self._analyzer = MuscleAnalyzer(self._tracker.subject)
+        self._analyzer = MuscleAnalyzer(tracker.subject, model=self._model)
+        self._tracker = tracker
 
     def _take(self, outputs: list[tracked.Output]) -> None:
         for output in outputs:
