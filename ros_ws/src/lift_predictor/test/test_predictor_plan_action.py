@@ -149,7 +149,8 @@ def test_goal_is_planned_with_feedback_as_by_the_core(client: Client, subject) -
     assert result.lift.report.objective == pytest.approx(planned.report.objective, rel=1e-6)
     assert result.technique_index == pytest.approx(planned.index, rel=1e-3)
     feet = (result.feet_forward, result.feet_left, result.feet_heading)
-    assert feet == (planned.ankle, planned.left, planned.heading) == (0.0, 0.0, 0.0)
+    planned_feet = (planned.feet.forward, planned.feet.left, planned.feet.heading)
+    assert feet == planned_feet == (0.0, 0.0, 0.0)
 
 
 def test_cancel_ends_the_work_before_it_is_done(client: Client, subject) -> None:
