@@ -20,7 +20,7 @@ SOURCES = ROOT / 'ros_ws' / 'src'
 NUMBA = """
 import numpy as np
 from human_model.compiled_blocks import points_and_frames
-from human_model.skeleton_2d import Skeleton2D
+from human_model.skeletons import Skeleton2D
 from human_model.subject import Subject
 tree = Skeleton2D.of(Subject('test', 'male', 75.0, 1.75, 30.0)).tree
 one = np.zeros(1, dtype=np.int64)

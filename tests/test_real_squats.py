@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from human_model.frames import matrix_from_quaternion
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton3D
 from lifting_recordings.importer import ImportOptions, import_recording
 from motion_tracker.core.filters import derivatives, zero_phase
 from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer

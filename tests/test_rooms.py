@@ -44,6 +44,8 @@ MAY_IMPORT = {
         'injury_monitor',
     },
 }
+#: Modules in a folder, apart from `__init__`.
+MOST_MODULES = 25
 ROS = {'rclpy', 'lifting_interfaces', 'lifting_node', 'launch', 'launch_ros'}
 
 
@@ -147,3 +149,13 @@ def test_exported_names_exist_and_load_at_their_first_use(package: str) -> None:
         assert getattr(module, name).__name__ == name
     with pytest.raises(AttributeError, match='no_such_name'):
         _ = module.no_such_name
+
+
+def test_no_folder_has_too_many_modules() -> None:
+    counts = {
+        str(folder.relative_to(SOURCES)): len(list(folder.glob('*.py'))) - 1
+        for package in SOURCES.iterdir()
+        for folder in (package / package.name, *(package / package.name).rglob('*'))
+        if folder.is_dir()
+    }
+    assert {name: count for name, count in counts.items() if count > MOST_MODULES} == {}

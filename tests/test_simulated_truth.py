@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from human_model.skeleton import ExternalForce
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton3D
 from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
 from muscle_analyzer.core.loads.options import MuscleAnalyzerOptions
 from muscle_analyzer.core.subject.segment_masses import MassDistribution

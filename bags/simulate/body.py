@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from human_model import compiled
 from human_model.named_subjects import named_subject
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton3D
 from human_model.subject import Subject
 from human_model.typing import Array, IntArray
 

@@ -32,7 +32,7 @@ from lifting_recordings.messages import MarkerCalibration, subject_message, task
 from lifting_recordings.recording import Recording
 from lifting_recordings.subject_file import TaskEntry
 from motion_tracker.core.calibration import calibrate
-from motion_tracker.core.marker_set import load_marker_set
+from motion_tracker.core.markers.marker_set import load_marker_set
 
 _SOURCE = (
     'SIMULATED, not measured: bags/simulate. Person, task and box after Zaman 2022; motion by '

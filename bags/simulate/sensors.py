@@ -20,7 +20,7 @@ from scipy.spatial.transform import Rotation
 from human_model import compiled
 from human_model.typing import Array
 from lifting_recordings.recording import Plate
-from motion_tracker.core.marker_set import load_marker_set
+from motion_tracker.core.markers.marker_set import load_marker_set
 
 # Joints next to each segment, whose angles move its soft tissue.
 _NEIGHBOURS = {

@@ -21,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from human_model.skeleton import Skeleton
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton3D
 from human_model.strength import JointStrength
 from human_model.subject import Subject
 from human_model.tree import PRISMATIC

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from human_model.skeleton import Skeleton
-from human_model.skeleton_2d import Skeleton2D
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton2D, Skeleton3D
 from human_model.subject import Subject
 
 # The machine that runs the suite may be busy: examples are fixed and have no deadline.

@@ -16,7 +16,7 @@ from human_model.anthropometry import (
 )
 from human_model.exceptions import AnthropometryError, HumanModelError
 from human_model.inertia import combine, positive_inertia, rotate, shift
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton3D
 from human_model.subject import Calibration, Subject
 from human_model.tables import length_sum, read_table
 

@@ -12,7 +12,7 @@ from human_model.constants import GRAVITY
 from human_model.exceptions import ChainError
 from human_model.recursive import augmented_inertia, forward_kinematics, recursive_dynamics
 from human_model.skeleton import ExternalForce
-from human_model.skeleton_2d import Skeleton2D
+from human_model.skeletons import Skeleton2D
 from human_model.tree import build_tree
 
 

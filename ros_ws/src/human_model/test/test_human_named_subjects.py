@@ -7,8 +7,7 @@ import pytest
 
 from human_model.exceptions import SubjectError
 from human_model.named_subjects import named_parameters, named_subject, subject_names
-from human_model.skeleton_2d import Skeleton2D
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton2D, Skeleton3D
 
 TABLE_2_2 = {  # link: length [m], mass [kg], Izz about the proximal joint [kg m^2]
     'trunk': (0.570, 45.447, 4.073),

@@ -11,8 +11,7 @@ from human_model import compiled
 from human_model.exceptions import AnthropometryError, ChainError, MotionError
 from human_model.frames import matrix_from_quaternion
 from human_model.motion import FRAMES, POINTS
-from human_model.skeleton_2d import Skeleton2D
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton2D, Skeleton3D
 
 
 def test_jacobian_by_finite_differences(skeleton, rng):

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from human_model.constants import GRAVITY
 from human_model.exceptions import StrengthError
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton3D
 from human_model.strength import (
     LARGE,
     JointStrength,

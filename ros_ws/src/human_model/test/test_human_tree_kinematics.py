@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from human_model import compiled, tree_kinematics
-from human_model.skeleton_2d import Skeleton2D
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton2D, Skeleton3D
 from human_model.subject import Subject
 
 SUBJECT = Subject('test', 'male', 75.0, 1.75, 30.0)
@@ -37,7 +36,7 @@ def test_same_frames_and_points_as_compiled(kind):
 def test_sagittal_skeleton_does_not_load_numba():
     code = (
         'import sys, numpy as np\n'
-        'from human_model.skeleton_2d import Skeleton2D\n'
+        'from human_model.skeletons import Skeleton2D\n'
         'from human_model.subject import Subject\n'
         "skeleton = Skeleton2D.of(Subject('test', 'male', 75.0, 1.75, 30.0))\n"
         'q = np.zeros((4, 10))\n'

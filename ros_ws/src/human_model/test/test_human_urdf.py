@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from human_model.constants import GRAVITY
-from human_model.skeleton_2d import Skeleton2D
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton2D, Skeleton3D
 from human_model.strength import LARGE, JointStrength
 from human_model.urdf import NO_SPEED_LIMIT, WORLD, body_names, joint_effort, urdf
 

@@ -14,9 +14,9 @@ from human_model.subject import Subject
 from lift_predictor.core.models.sagittal.lowering import stoop_squat_index
 from lift_predictor.core.models.sagittal.parameters import JOINTS
 from lift_predictor.core.models.spatial.evaluation import lowering
-from lift_predictor.core.models.spatial.feet import allowed, candidates
 from lift_predictor.core.models.spatial.parameters import SPLINED
-from lift_predictor.core.models.spatial.plan_postures import near_guess
+from lift_predictor.core.models.spatial.planned.feet import allowed, candidates
+from lift_predictor.core.models.spatial.planned.plan_postures import near_guess
 from lift_predictor.core.models.spatial.way import way_of
 from lift_predictor.core.planning.plan_task import FARTHEST, NEAREST, Feet, PlanTask
 from lift_predictor.core.planning.planner import LiftPlanner
@@ -142,7 +142,7 @@ def test_candidates_for_the_feet_are_allowed_and_differ() -> None:
 
 
 def test_free_feet_are_the_best_that_were_tried(planner, subject, monkeypatch) -> None:
-    monkeypatch.setattr('lift_predictor.core.models.spatial.feet.HALVINGS', -1)
+    monkeypatch.setattr('lift_predictor.core.models.spatial.planned.feet.HALVINGS', -1)
     told = []
     task = replace(TASK, feet=None, start=(0.4, -0.2, 0.5))
     planned = planner.plan(subject, task, told.append)

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from human_model.motion import BodyMotion
-    from human_model.skeleton_3d import Skeleton3D
+    from human_model.skeletons import Skeleton3D
     from human_model.subject import Subject
     from injury_monitor.core.lifting_equation import Coupling, LiftingTask, lifting_equation
     from injury_monitor.core.work import Work
@@ -73,7 +73,7 @@ _MODULES = {
     'PlanTask': 'lift_predictor.core.planning.plan_task',
     'Prediction': 'lifting.prediction',
     'Recording': 'lifting.recording',
-    'Skeleton3D': 'human_model.skeleton_3d',
+    'Skeleton3D': 'human_model.skeletons',
     'Subject': 'human_model.subject',
     'Tracking': 'lifting.tracking',
     'Work': 'injury_monitor.core.work',

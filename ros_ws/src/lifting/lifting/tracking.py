@@ -10,7 +10,7 @@ from human_model.subject import Subject
 from lifting.lift import Lift
 from lifting.recording import Recording
 from motion_tracker import inputs
-from motion_tracker.core.marker_set import load_marker_set
+from motion_tracker.core.markers.marker_set import load_marker_set
 from motion_tracker.core.tracked import MeasuredLift, Notice, Output, TrackerSettings
 from motion_tracker.core.tracker import MotionTracker
 

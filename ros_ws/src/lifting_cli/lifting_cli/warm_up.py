@@ -27,8 +27,7 @@ def warm_analyzer() -> None:
     import numpy as np
 
     from human_model.named_subjects import named_subject, subject_names
-    from human_model.skeleton_2d import Skeleton2D
-    from human_model.skeleton_3d import Skeleton3D
+    from human_model.skeletons import Skeleton2D, Skeleton3D
     from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
 
     subject = named_subject(subject_names()[0])

@@ -22,7 +22,7 @@ import numpy.typing as npt
 
 from human_model.constants import SIDES
 from human_model.exceptions import HumanModelError
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton3D
 from human_model.subject import Calibration, Subject
 from human_model.typing import Array
 from lifting_recordings.exceptions import ConventionError
@@ -31,7 +31,7 @@ from lifting_recordings.recording import Plate, Recording, centre_of_pressure
 from lifting_recordings.subject_file import QUIET_STANDING, SubjectFile
 from motion_tracker.core.exceptions import MotionTrackerError
 from motion_tracker.core.filters import zero_phase
-from motion_tracker.core.marker_set import load_marker_set
+from motion_tracker.core.markers.marker_set import load_marker_set
 from motion_tracker.core.quiet_standing import (
     QuietStanding,
     coordinates_of,

@@ -11,7 +11,7 @@ from lifting_recordings.recording import Recording
 from lifting_recordings.subject_file import SubjectFile
 from motion_tracker.core.calibration import calibrate
 from motion_tracker.core.exceptions import MotionTrackerError
-from motion_tracker.core.marker_set import load_marker_set
+from motion_tracker.core.markers.marker_set import load_marker_set
 
 
 def calibrate_markers(

@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton3D
 from lifting_recordings.exceptions import ConventionError, SubjectFileError
 from lifting_recordings.plate_registration import moved, offset_of, register_plates
 from lifting_recordings.recording import Plate, Recording, centre_of_pressure
 from lifting_recordings.subject_file import read_subject_file
-from motion_tracker.core.marker_model import from_anthropometry
-from motion_tracker.core.marker_set import load_marker_set
+from motion_tracker.core.markers.marker_model import from_anthropometry
+from motion_tracker.core.markers.marker_set import load_marker_set
 
 FRAMES, RATE, GRAVITY = 120, 100.0, 9.80665
 MARKER_SET = 'plug_in_gait_58'

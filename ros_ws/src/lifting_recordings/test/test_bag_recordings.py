@@ -12,7 +12,7 @@ import pytest
 from scipy.interpolate import make_interp_spline
 
 from human_model.named_subjects import named_subject
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton3D
 from lifting_recordings.reader import BagReader
 from lifting_recordings.recording import centre_of_pressure
 

@@ -5,7 +5,7 @@
 import numpy as np
 import pytest
 
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton3D
 from human_model.subject import Subject
 from lifting_visualization.core.drawing import SpineScale
 from lifting_visualization.core.visualizer import Options, Visualizer

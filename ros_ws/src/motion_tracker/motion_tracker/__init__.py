@@ -22,10 +22,10 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from motion_tracker.core.calibration import calibrate
     from motion_tracker.core.exceptions import MotionTrackerError
-    from motion_tracker.core.force_plates import PlateGeometry, ground_reaction
-    from motion_tracker.core.inverse_kinematics import InverseKinematics
-    from motion_tracker.core.lift_events import LiftEvent, detect_lifts
-    from motion_tracker.core.marker_set import MarkerSet, load_marker_set
+    from motion_tracker.core.forces.force_plates import PlateGeometry, ground_reaction
+    from motion_tracker.core.inverse_kinematics.inverse_kinematics import InverseKinematics
+    from motion_tracker.core.lifts.lift_events import LiftEvent, detect_lifts
+    from motion_tracker.core.markers.marker_set import MarkerSet, load_marker_set
     from motion_tracker.core.tracked import (
         DetectedEvent,
         MeasuredLift,
@@ -55,20 +55,20 @@ __all__ = [
 
 _MODULES = {
     'DetectedEvent': 'tracked',
-    'InverseKinematics': 'inverse_kinematics',
-    'LiftEvent': 'lift_events',
-    'MarkerSet': 'marker_set',
+    'InverseKinematics': 'inverse_kinematics.inverse_kinematics',
+    'LiftEvent': 'lifts.lift_events',
+    'MarkerSet': 'markers.marker_set',
     'MeasuredLift': 'tracked',
     'MotionTracker': 'tracker',
     'MotionTrackerError': 'exceptions',
     'Notice': 'tracked',
-    'PlateGeometry': 'force_plates',
+    'PlateGeometry': 'forces.force_plates',
     'TrackedFrame': 'tracked',
     'TrackerSettings': 'tracked',
     'calibrate': 'calibration',
-    'detect_lifts': 'lift_events',
-    'ground_reaction': 'force_plates',
-    'load_marker_set': 'marker_set',
+    'detect_lifts': 'lifts.lift_events',
+    'ground_reaction': 'forces.force_plates',
+    'load_marker_set': 'markers.marker_set',
 }
 
 

@@ -18,7 +18,7 @@ from lifting_messages.conversions import (
 )
 from lifting_messages.message_types import Message, make, message_type
 from lifting_messages.stamps import header
-from motion_tracker.core.lift_events import LiftPhase
+from motion_tracker.core.lifts.lift_events import LiftPhase
 from motion_tracker.core.tracked import FROM_BOX, DetectedEvent, TrackedFrame
 from motion_tracker.core.tracked import MeasuredLift as TrackedLift
 

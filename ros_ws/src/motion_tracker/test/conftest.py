@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton3D
 from human_model.subject import Subject
 from motion_tracker.core.calibration import calibrate
-from motion_tracker.core.inverse_kinematics import InverseKinematics
-from motion_tracker.core.marker_model import from_anthropometry
-from motion_tracker.core.marker_set import load_marker_set
+from motion_tracker.core.inverse_kinematics.inverse_kinematics import InverseKinematics
+from motion_tracker.core.markers.marker_model import from_anthropometry
+from motion_tracker.core.markers.marker_set import load_marker_set
 
 ROOT = Path(__file__).resolve().parents[4]
 SQUATS = ROOT.parent / 'shared' / 'data' / 'squats_bodyweight'

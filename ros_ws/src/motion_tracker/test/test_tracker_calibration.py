@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from human_model.anthropometry import segment_lengths
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton3D
 from motion_tracker.core.calibration import calibrate
 from motion_tracker.core.exceptions import CalibrationError
-from motion_tracker.core.inverse_kinematics import InverseKinematics
-from motion_tracker.core.marker_model import model_for
+from motion_tracker.core.inverse_kinematics.inverse_kinematics import InverseKinematics
+from motion_tracker.core.markers.marker_model import model_for
 
 #: This person is not as the tables say.
 OWN = {'thigh': 0.45, 'shank': 0.40, 'upper_arm': 0.30, 'forearm': 0.26}

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from motion_tracker.core.exceptions import ForcePlateError
-from motion_tracker.core.force_plates import (
+from motion_tracker.core.forces.force_plates import (
     PlateGeometry,
     ground_reaction,
     total_centre_of_pressure,

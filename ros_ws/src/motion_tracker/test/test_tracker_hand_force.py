@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from human_model.constants import GRAVITY as G
 from motion_tracker.core.exceptions import HandForceError
-from motion_tracker.core.hand_force import HandForceEstimator, HandForceSettings
-from motion_tracker.core.hand_force_kernel import split
+from motion_tracker.core.forces.hand_force import HandForceEstimator, HandForceSettings
+from motion_tracker.core.forces.hand_force_kernel import split
 
 SIZE = (0.25, 0.30, 0.15)
 BOX = np.array([0.4, 0.0, 0.1])

@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 
 from human_model.report import SolveStatus
 from motion_tracker.core.exceptions import InverseKinematicsError
-from motion_tracker.core.ik_kernel import fit
-from motion_tracker.core.ik_types import IKSettings
-from motion_tracker.core.inverse_kinematics import InverseKinematics
-from motion_tracker.core.marker_model import MarkerModel, from_anthropometry
-from motion_tracker.core.marker_set import load_marker_set
+from motion_tracker.core.inverse_kinematics.inverse_kinematics import InverseKinematics
+from motion_tracker.core.inverse_kinematics.kernel import fit
+from motion_tracker.core.inverse_kinematics.solution import IKSettings
+from motion_tracker.core.markers.marker_model import MarkerModel, from_anthropometry
+from motion_tracker.core.markers.marker_set import load_marker_set
 
 FAINT = IKSettings(neutral_weight=1e-10, spine_weight=1e-10)
 

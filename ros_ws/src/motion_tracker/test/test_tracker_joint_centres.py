@@ -6,7 +6,11 @@ import numpy as np
 import pytest
 
 from motion_tracker.core.exceptions import CalibrationError
-from motion_tracker.core.joint_centres import harrington_hip, joint_centres, load_joint_definitions
+from motion_tracker.core.markers.joint_centres import (
+    harrington_hip,
+    joint_centres,
+    load_joint_definitions,
+)
 
 #: Pelvis 250 mm wide, 150 mm deep, leg of 900 mm; x forward, y left, z up, origin at mid-ASIS.
 ASIS = {'r': np.array([0.0, -0.125, 0.0]), 'l': np.array([0.0, 0.125, 0.0])}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from motion_tracker.core.exceptions import LiftEventError
-from motion_tracker.core.lift_events import (
+from motion_tracker.core.lifts.lift_events import (
     LiftEventDetector,
     LiftEventSettings,
     LiftPhase,

@@ -4,10 +4,10 @@
 
 import pytest
 
-from motion_tracker.core.lift_events import LiftEvent, LiftPhase
-from motion_tracker.core.lift_queue import LiftQueue
+from motion_tracker.core.forces.mass_watch import MassWatch
+from motion_tracker.core.lifts.lift_events import LiftEvent, LiftPhase
+from motion_tracker.core.lifts.lift_queue import LiftQueue
 from motion_tracker.core.live_status import LiveStatus
-from motion_tracker.core.mass_watch import MassWatch
 from motion_tracker.core.tracked import FROM_BOX, FROM_HANDS
 
 

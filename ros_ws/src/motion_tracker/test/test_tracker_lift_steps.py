@@ -4,7 +4,7 @@
 
 import pytest
 
-from motion_tracker.core.lift_events import LiftPhase
+from motion_tracker.core.lifts.lift_events import LiftPhase
 from motion_tracker.core.tracked import DetectedEvent, MeasuredLift, TrackerSettings
 from motion_tracker.core.tracker import MotionTracker
 

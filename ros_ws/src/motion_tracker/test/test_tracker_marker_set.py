@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from human_model.anthropometry import segment_lengths
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton3D
 from human_model.subject import Subject
 from motion_tracker.core.exceptions import MarkerSetError
-from motion_tracker.core.joint_centres import joint_centres, load_joint_definitions
-from motion_tracker.core.marker_model import from_anthropometry
-from motion_tracker.core.marker_set import (
+from motion_tracker.core.markers.joint_centres import joint_centres, load_joint_definitions
+from motion_tracker.core.markers.marker_model import from_anthropometry
+from motion_tracker.core.markers.marker_set import (
     COLUMNS,
     DATA,
     REFERENCE_SUBJECT,

@@ -7,7 +7,7 @@ import pytest
 
 from human_model.constants import GRAVITY
 from motion_tracker.core.exceptions import ForcePlateError
-from motion_tracker.core.mass_watch import MassWatch
+from motion_tracker.core.forces.mass_watch import MassWatch
 
 RATE = 100.0
 

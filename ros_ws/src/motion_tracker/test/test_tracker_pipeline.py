@@ -9,8 +9,8 @@ import yaml
 from human_model.report import SolveStatus
 from motion_tracker.core.configuration import settings_from, tracker_from
 from motion_tracker.core.exceptions import MotionTrackerError, TrackerError
-from motion_tracker.core.lift_events import LiftPhase
-from motion_tracker.core.marker_set import DATA
+from motion_tracker.core.lifts.lift_events import LiftPhase
+from motion_tracker.core.markers.marker_set import DATA
 from motion_tracker.core.tracked import (
     FROM_BOX,
     FROM_HANDS,

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from human_model.subject import Calibration, Subject
-from motion_tracker.core.marker_set import load_marker_set
+from motion_tracker.core.markers.marker_set import load_marker_set
 from motion_tracker.core.tracked import DetectedEvent, MeasuredLift, TrackedFrame
 from motion_tracker.core.tracker import MotionTracker
 

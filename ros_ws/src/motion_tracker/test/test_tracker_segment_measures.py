@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from human_model.anthropometry import segment_lengths
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton3D
 from motion_tracker.core.calibration import calibrate
-from motion_tracker.core.marker_set import available, load_marker_set
-from motion_tracker.core.segment_measures import measured_lengths
+from motion_tracker.core.markers.marker_set import available, load_marker_set
+from motion_tracker.core.markers.segment_measures import measured_lengths
 
 FRONT_AND_BACK = {
     'plug_in_gait_58': (('RASI', 'LASI'), ('RPSI', 'LPSI')),

@@ -9,10 +9,10 @@ import pytest
 
 from human_model import compiled
 from human_model.constants import GRAVITY
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton3D
 from motion_tracker.core.filters import derivatives, zero_phase
-from motion_tracker.core.inverse_kinematics import InverseKinematics
-from motion_tracker.core.marker_model import model_for
+from motion_tracker.core.inverse_kinematics.inverse_kinematics import InverseKinematics
+from motion_tracker.core.markers.marker_model import model_for
 from motion_tracker.core.tracked import DetectedEvent, MeasuredLift, TrackedFrame
 from motion_tracker.core.tracker import MotionTracker
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton3D
 from human_model.subject import Subject
 from muscle_analyzer.core.exceptions import ModelFileError
 from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer

@@ -12,7 +12,7 @@ pytest.importorskip('lifting_interfaces.msg', reason='the interface package is n
 from lifting_interfaces.msg import SpineLoad
 
 from human_model.report import SolveReport, SolveStatus
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton3D
 from human_model.subject import Subject
 from lifting_messages.stamps import to_seconds
 from muscle_analyzer import conversions

@@ -33,8 +33,7 @@ from rclpy.executors import SingleThreadedExecutor  # noqa: E402
 
 from human_model.motion import Lift  # noqa: E402
 from human_model.report import SolveReport as Report  # noqa: E402
-from human_model.skeleton_2d import Skeleton2D  # noqa: E402
-from human_model.skeleton_3d import Skeleton3D  # noqa: E402
+from human_model.skeletons import Skeleton2D, Skeleton3D  # noqa: E402
 from human_model.subject import Subject as Person  # noqa: E402
 from lifting_messages import conversions, encode  # noqa: E402
 from lifting_messages.stamps import to_seconds  # noqa: E402

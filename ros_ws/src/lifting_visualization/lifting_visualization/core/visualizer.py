@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from human_model.motion import BodyMotion, Lift
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton3D
 from human_model.subject import Subject
 from human_model.typing import Array
 from human_model.urdf import person_urdf

@@ -18,21 +18,21 @@ import numpy as np
 import numpy.typing as npt
 
 from human_model.anthropometry import segment_lengths
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton3D
 from human_model.subject import Calibration, Subject
 from human_model.typing import Array
 from motion_tracker.core.exceptions import CalibrationError
-from motion_tracker.core.ik_types import IKSettings
-from motion_tracker.core.inverse_kinematics import InverseKinematics
-from motion_tracker.core.joint_centres import (
+from motion_tracker.core.inverse_kinematics.inverse_kinematics import InverseKinematics
+from motion_tracker.core.inverse_kinematics.solution import IKSettings
+from motion_tracker.core.markers.joint_centres import (
     SEGMENT_OF_JOINT,
     JointDefinition,
     joint_centres,
     load_joint_definitions,
 )
-from motion_tracker.core.marker_model import MarkerModel, from_calibration
-from motion_tracker.core.marker_set import MarkerSet
-from motion_tracker.core.segment_measures import measured_lengths
+from motion_tracker.core.markers.marker_model import MarkerModel, from_calibration
+from motion_tracker.core.markers.marker_set import MarkerSet
+from motion_tracker.core.markers.segment_measures import measured_lengths
 
 #: Weight of a joint centre in the fit of the posture, against 1 or 2 of a landmark.
 CENTRE_WEIGHT = 10.0

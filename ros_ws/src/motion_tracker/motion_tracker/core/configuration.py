@@ -9,9 +9,9 @@ import numpy.typing as npt
 
 from human_model.constants import SIDES
 from human_model.subject import Subject
-from motion_tracker.core.force_plates import PlateGeometry
-from motion_tracker.core.lift_events import LiftEventSettings
-from motion_tracker.core.marker_set import load_marker_set
+from motion_tracker.core.forces.force_plates import PlateGeometry
+from motion_tracker.core.lifts.lift_events import LiftEventSettings
+from motion_tracker.core.markers.marker_set import load_marker_set
 from motion_tracker.core.tracked import TrackerSettings
 from motion_tracker.core.tracker import MotionTracker
 

@@ -17,11 +17,11 @@ from human_model.skeleton import Skeleton
 from human_model.typing import Array
 from motion_tracker.core.dynamics import needed_force
 from motion_tracker.core.filters import CausalFilter
-from motion_tracker.core.force_plates import PlateGeometry
-from motion_tracker.core.hand_force import HandForceEstimator
-from motion_tracker.core.ik_types import IKSolution
+from motion_tracker.core.forces.force_plates import PlateGeometry
+from motion_tracker.core.forces.hand_force import HandForceEstimator
+from motion_tracker.core.forces.plate_kernel import feet
+from motion_tracker.core.inverse_kinematics.solution import IKSolution
 from motion_tracker.core.live_status import LiveStatus
-from motion_tracker.core.plate_kernel import feet
 from motion_tracker.core.streams import SampledStream
 from motion_tracker.core.tracked import Notice, TrackedFrame, TrackerSettings
 

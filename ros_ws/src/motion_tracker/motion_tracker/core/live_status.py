@@ -5,8 +5,8 @@
 import numpy as np
 
 from human_model.report import SolveStatus
-from motion_tracker.core.ik_types import IKSolution
-from motion_tracker.core.mass_watch import MassCheck, MassWatch
+from motion_tracker.core.forces.mass_watch import MassCheck, MassWatch
+from motion_tracker.core.inverse_kinematics.solution import IKSolution
 
 
 class LiveStatus:

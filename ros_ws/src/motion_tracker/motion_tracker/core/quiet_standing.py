@@ -17,14 +17,14 @@ from human_model.compiled import body_frames, newton_euler
 from human_model.constants import GRAVITY
 from human_model.motion import POINTS
 from human_model.skeleton import Skeleton
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton3D
 from human_model.subject import Subject
 from human_model.typing import Array
 from motion_tracker.core.exceptions import TrackerError
 from motion_tracker.core.filters import derivatives, zero_phase
-from motion_tracker.core.inverse_kinematics import InverseKinematics
-from motion_tracker.core.marker_model import model_for
-from motion_tracker.core.marker_set import MarkerSet
+from motion_tracker.core.inverse_kinematics.inverse_kinematics import InverseKinematics
+from motion_tracker.core.markers.marker_model import model_for
+from motion_tracker.core.markers.marker_set import MarkerSet
 
 #: Cut-off of the motion [Hz], as in the thesis (section 3.4).
 _CUTOFF = 6.0

@@ -12,10 +12,10 @@ from human_model.report import SolveStatus
 from human_model.typing import Array
 from motion_tracker.core.exceptions import TrackerError
 from motion_tracker.core.filters import MOTION_CUTOFF, PLATE_CUTOFF
-from motion_tracker.core.force_plates import total_centre_of_pressure
-from motion_tracker.core.hand_force import HandForceSettings
-from motion_tracker.core.ik_types import IKSettings, IKSolution
-from motion_tracker.core.lift_events import LiftEvent, LiftEventSettings
+from motion_tracker.core.forces.force_plates import total_centre_of_pressure
+from motion_tracker.core.forces.hand_force import HandForceSettings
+from motion_tracker.core.inverse_kinematics.solution import IKSettings, IKSolution
+from motion_tracker.core.lifts.lift_events import LiftEvent, LiftEventSettings
 
 FROM_BOX = 'box'
 FROM_HANDS = 'hands'

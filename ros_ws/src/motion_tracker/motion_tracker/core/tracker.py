@@ -16,25 +16,25 @@ import numpy.typing as npt
 
 from human_model.constants import SIDES
 from human_model.motion import POINTS
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton3D
 from human_model.subject import Subject
 from human_model.typing import Array
 from motion_tracker.core.exceptions import TrackerError
 from motion_tracker.core.filters import settling_time
-from motion_tracker.core.force_plates import PlateGeometry
-from motion_tracker.core.hand_force import HandForceEstimator
-from motion_tracker.core.ik_types import IKSolution
+from motion_tracker.core.forces.force_plates import PlateGeometry
+from motion_tracker.core.forces.hand_force import HandForceEstimator
+from motion_tracker.core.forces.mass_watch import MassWatch
 from motion_tracker.core.initial_rest import initial_speed
-from motion_tracker.core.inverse_kinematics import InverseKinematics
-from motion_tracker.core.lift_events import LiftEventDetector
-from motion_tracker.core.lift_queue import LiftQueue
+from motion_tracker.core.inverse_kinematics.inverse_kinematics import InverseKinematics
+from motion_tracker.core.inverse_kinematics.solution import IKSolution
+from motion_tracker.core.lifts.lift_events import LiftEventDetector
+from motion_tracker.core.lifts.lift_queue import LiftQueue
+from motion_tracker.core.lifts.measured_lift import LiftBuilder
 from motion_tracker.core.live_motion import HANDS, LiveMotion
 from motion_tracker.core.live_status import LiveStatus
-from motion_tracker.core.marker_frames import MarkerFrames
-from motion_tracker.core.marker_model import model_for
-from motion_tracker.core.marker_set import MarkerSet
-from motion_tracker.core.mass_watch import MassWatch
-from motion_tracker.core.measured_lift import LiftBuilder
+from motion_tracker.core.markers.marker_frames import MarkerFrames
+from motion_tracker.core.markers.marker_model import model_for
+from motion_tracker.core.markers.marker_set import MarkerSet
 from motion_tracker.core.stream_synchronizer import StreamSynchronizer
 from motion_tracker.core.streams import RATE_SAMPLES, SAME, SampledStream, rate_of
 from motion_tracker.core.tracked import FROM_BOX, FROM_HANDS, Notice, Output, TrackerSettings

@@ -4,9 +4,9 @@
 
 import numpy as np
 
-from motion_tracker.core.force_plates import PlateGeometry, ground_reaction
-from motion_tracker.core.lift_events import detect_lifts
-from motion_tracker.core.marker_set import REFERENCE_SUBJECT, load_marker_set
+from motion_tracker.core.forces.force_plates import PlateGeometry, ground_reaction
+from motion_tracker.core.lifts.lift_events import detect_lifts
+from motion_tracker.core.markers.marker_set import REFERENCE_SUBJECT, load_marker_set
 from motion_tracker.core.tracker import MotionTracker
 
 #: Any set with positions will do.

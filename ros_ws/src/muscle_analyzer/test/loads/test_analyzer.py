@@ -11,8 +11,7 @@ from scipy.spatial.transform import Rotation
 from human_model.frames import matrix_from_quaternion, quaternion_from_matrix
 from human_model.motion import POINTS
 from human_model.report import SolveStatus
-from human_model.skeleton_2d import Skeleton2D
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton2D, Skeleton3D
 from human_model.subject import Subject
 from muscle_analyzer.core.exceptions import (
     InputArrayError,

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from human_model.frames import ROS_FROM_OPENSIM, matrix_from_quaternion, to_opensim
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton3D
 from human_model.subject import Subject
 from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer, MuscleAnalyzerOptions
 from muscle_analyzer.core.loads.disc_frame import FORWARD_LEFT_UP

@@ -9,8 +9,7 @@ import pytest
 
 from human_model.frames import quaternion_from_matrix
 from human_model.report import SolveStatus
-from human_model.skeleton_2d import Skeleton2D
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton2D, Skeleton3D
 from human_model.strength import JointStrength
 from human_model.subject import Subject
 from muscle_analyzer.core.exceptions import InputArrayError, OptionError

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from human_model.frames import from_opensim
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton3D
 from human_model.subject import Subject
 from muscle_analyzer.core.exceptions import ScalingError
 from muscle_analyzer.core.subject.body_points import upright_state

@@ -13,8 +13,7 @@ from human_model.frames import (
     quaternion_from_matrix,
     rotation_from_opensim,
 )
-from human_model.skeleton_2d import Skeleton2D
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton2D, Skeleton3D
 from human_model.subject import Subject
 from muscle_analyzer.core.exceptions import ScalingError, TransferError
 from muscle_analyzer.core.multibody.inverse_dynamics import inverse_dynamics

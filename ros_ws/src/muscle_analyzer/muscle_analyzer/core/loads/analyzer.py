@@ -16,8 +16,7 @@ from numpy.typing import ArrayLike
 
 from human_model.motion import BodyMotion
 from human_model.skeleton import Skeleton
-from human_model.skeleton_2d import Skeleton2D
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton2D, Skeleton3D
 from human_model.subject import Subject
 from muscle_analyzer.core.exceptions import InputArrayError
 from muscle_analyzer.core.loads.analysis import MuscleAnalysis, Origin

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton3D
 from human_model.subject import Subject
 from human_model.typing import Array
 from muscle_analyzer.core.exceptions import UnknownNameError

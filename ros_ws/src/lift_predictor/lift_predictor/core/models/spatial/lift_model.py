@@ -14,7 +14,6 @@ from human_model.motion import BodyMotion, Lift
 from human_model.subject import Subject
 from human_model.typing import Array
 from lift_predictor.core.exceptions import UnreachableError
-from lift_predictor.core.models.spatial import feet as places
 from lift_predictor.core.models.spatial.active_constraints import active_limits
 from lift_predictor.core.models.spatial.assembly import (
     spatial_assembler,
@@ -26,7 +25,8 @@ from lift_predictor.core.models.spatial.grid import SpatialGrid
 from lift_predictor.core.models.spatial.lift_motion import body_motion, feet_moved, joint_torques
 from lift_predictor.core.models.spatial.parameters import STRONG
 from lift_predictor.core.models.spatial.person import SpatialPerson
-from lift_predictor.core.models.spatial.plan import place_plan
+from lift_predictor.core.models.spatial.planned import feet as places
+from lift_predictor.core.models.spatial.planned.plan import place_plan
 from lift_predictor.core.models.spatial.postures import GUESSES, PostureFinder
 from lift_predictor.core.models.spatial.recorded_task import recorded_task
 from lift_predictor.core.models.spatial.starts import (

@@ -14,7 +14,7 @@ import numpy as np
 from human_model.anthropometry import SegmentParameters, body_dimensions
 from human_model.constants import GRAVITY
 from human_model.inertia import combine
-from human_model.skeleton_3d import Skeleton3D
+from human_model.skeletons import Skeleton3D
 from human_model.strength import JointStrength
 from human_model.subject import Subject
 from human_model.typing import Array

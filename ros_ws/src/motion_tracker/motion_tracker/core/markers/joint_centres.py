@@ -10,7 +10,7 @@ import numpy as np
 
 from human_model.typing import Array
 from motion_tracker.core.exceptions import CalibrationError
-from motion_tracker.core.marker_set import DATA
+from motion_tracker.core.markers.marker_set import DATA
 
 #: Segment whose proximal joint each centre is.
 SEGMENT_OF_JOINT = {

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from human_model.typing import Array
-from motion_tracker.core.marker_set import DATA, MarkerSet
+from motion_tracker.core.markers.marker_set import DATA, MarkerSet
 
 
 def measured_lengths(

@@ -23,11 +23,11 @@ from human_model.report import SolveStatus
 from human_model.skeleton import Skeleton
 from human_model.typing import Array
 from motion_tracker.core.exceptions import InverseKinematicsError
-from motion_tracker.core.ik_kernel import fit, marked, misfit, observed_curvature
-from motion_tracker.core.ik_types import IKSettings, IKSolution, Observed
-from motion_tracker.core.marker_model import MarkerModel
-from motion_tracker.core.marker_set import mirror_name
-from motion_tracker.core.spine_prior import spine_prior
+from motion_tracker.core.inverse_kinematics.kernel import fit, marked, misfit, observed_curvature
+from motion_tracker.core.inverse_kinematics.solution import IKSettings, IKSolution, Observed
+from motion_tracker.core.inverse_kinematics.spine_prior import spine_prior
+from motion_tracker.core.markers.marker_model import MarkerModel
+from motion_tracker.core.markers.marker_set import mirror_name
 
 _PLACE = ('pelvis_tx', 'pelvis_ty', 'pelvis_tz', 'pelvis_tilt', 'pelvis_list', 'pelvis_rotation')
 

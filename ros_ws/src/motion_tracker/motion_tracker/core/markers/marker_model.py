@@ -11,7 +11,7 @@ from human_model.anthropometry import segment_lengths
 from human_model.subject import Calibration, Subject
 from human_model.typing import Array
 from motion_tracker.core.exceptions import MarkerSetError
-from motion_tracker.core.marker_set import MarkerSet
+from motion_tracker.core.markers.marker_set import MarkerSet
 
 
 @dataclass(frozen=True, eq=False)

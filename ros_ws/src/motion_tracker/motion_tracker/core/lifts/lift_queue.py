@@ -12,11 +12,11 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from motion_tracker.core.hand_force import HandForceEstimator
-from motion_tracker.core.ik_types import IKSolution
-from motion_tracker.core.lift_events import LiftEvent, LiftPhase
+from motion_tracker.core.forces.hand_force import HandForceEstimator
+from motion_tracker.core.inverse_kinematics.solution import IKSolution
+from motion_tracker.core.lifts.lift_events import LiftEvent, LiftPhase
+from motion_tracker.core.lifts.measured_lift import LiftBuilder
 from motion_tracker.core.live_status import LiveStatus
-from motion_tracker.core.measured_lift import LiftBuilder
 from motion_tracker.core.tracked import FROM_BOX, DetectedEvent, FrameRecord, MeasuredLift, Output
 
 #: Frames older than this are removed unless a lift needs them [s].

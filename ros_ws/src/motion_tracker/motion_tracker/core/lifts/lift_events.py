@@ -21,7 +21,7 @@ import numpy.typing as npt
 
 from human_model.typing import Array
 from motion_tracker.core.exceptions import LiftEventError
-from motion_tracker.core.onset_kernel import onset
+from motion_tracker.core.lifts.onset_kernel import onset
 
 #: Steps of the search for a change point [s]; well below the 10 ms of a frame.
 _STEP = 0.002

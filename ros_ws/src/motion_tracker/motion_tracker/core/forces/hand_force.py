@@ -21,8 +21,8 @@ import numpy as np
 import numpy.typing as npt
 
 from human_model.typing import Array
-from motion_tracker.core import hand_force_kernel
 from motion_tracker.core.exceptions import HandForceError
+from motion_tracker.core.forces import hand_force_kernel
 
 
 @dataclass(frozen=True)

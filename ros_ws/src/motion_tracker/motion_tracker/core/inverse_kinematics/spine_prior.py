@@ -5,7 +5,7 @@
 import csv
 from functools import cache
 
-from motion_tracker.core.marker_set import DATA
+from motion_tracker.core.markers.marker_set import DATA
 
 
 @cache

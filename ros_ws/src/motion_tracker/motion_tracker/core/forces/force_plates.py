@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from human_model.typing import Array
-from motion_tracker.core import plate_kernel
 from motion_tracker.core.exceptions import ForcePlateError
+from motion_tracker.core.forces import plate_kernel
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,8 +15,8 @@ from human_model.skeleton import Skeleton
 from human_model.typing import Array, IntArray
 from motion_tracker.core.dynamics import needed_force
 from motion_tracker.core.filters import derivatives, zero_phase
-from motion_tracker.core.force_plates import GroundReaction, PlateGeometry, ground_reaction
-from motion_tracker.core.hand_force import HandForceEstimator
+from motion_tracker.core.forces.force_plates import GroundReaction, PlateGeometry, ground_reaction
+from motion_tracker.core.forces.hand_force import HandForceEstimator
 from motion_tracker.core.streams import SampledStream, columns_at
 from motion_tracker.core.tracked import FrameRecord, MeasuredLift, TrackerSettings
 

@@ -15,7 +15,7 @@ from lift_predictor.core.models.spatial.frame import StanceFrame
 from lift_predictor.core.models.spatial.grid import SpatialGrid
 from lift_predictor.core.models.spatial.parameters import DEPENDENT, SPLINED
 from lift_predictor.core.models.spatial.person import SpatialPerson
-from lift_predictor.core.models.spatial.plan_postures import first_good
+from lift_predictor.core.models.spatial.planned.plan_postures import first_good
 from lift_predictor.core.models.spatial.task import (
     KEY_JOINTS,
     PlacedBox,

@@ -27,7 +27,7 @@ from motion_tracker.core.exceptions import MarkerSetError
 #: Person the positions of the marker sets belong to.
 REFERENCE_SUBJECT = Subject('reference', 'male', 75.0, 1.75, 30.0)
 
-DATA = Path(__file__).resolve().parent.parent / 'data'
+DATA = Path(__file__).resolve().parents[2] / 'data'
 
 COLUMNS = (
     'marker',
