@@ -150,3 +150,17 @@ def test_the_front_door_needs_no_ros(tmp_path):
     )
     assert answer.returncode == 0, answer.stderr
     assert answer.stdout.startswith('Peak L5-S1 compression 4497 N')
+
+
+def test_the_example_runs_and_draws(tmp_path):
+    example = BAGS.parent / 'examples' / 'first_steps.py'
+    answer = subprocess.run(
+        [sys.executable, example, BAGS / 'symmetric_12kg', tmp_path],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert answer.returncode == 0, answer.stderr
+    assert 'recorded: peak compression 4497 N' in answer.stdout
+    assert 'largest mass for the same task' in answer.stdout
+    assert {path.name for path in tmp_path.iterdir()} == {'recorded.png', 'optimal.png'}
