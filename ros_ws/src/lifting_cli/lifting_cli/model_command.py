@@ -7,8 +7,6 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from lifting_cli.graph_errors import SessionError
-
 
 def add_to(commands: Any) -> None:
     """Add the command to the parsers of `lift`."""
@@ -23,9 +21,6 @@ def _run(_options: argparse.Namespace) -> int:
     try:
         path = lifting_model_path()
     except ModelFileError:
-        try:
-            path = fetch_lifting_model()
-        except ModelFileError as error:
-            raise SessionError(str(error)) from error
+        path = fetch_lifting_model()
     print(path)
     return 0

@@ -68,14 +68,14 @@ def shown_lift(lift: LiftReport, data: ReportData, name: str) -> ShownLift:
         lift,
         ZONES[zone],
         LEVELS[zone],
-        _overview(lift, data),
+        _overview(lift, data, ZONES[zone]),
         () if isinstance(risk, Missing) else _cards(risk, data.header),
         _drawings(lift, data.header, name),
         None if emg is None else emg_drawing(emg.matches, f'{name}-emg'),
     )
 
 
-def _overview(lift: LiftReport, data: ReportData) -> list[str]:
+def _overview(lift: LiftReport, data: ReportData, zone: str) -> list[str]:
     row = [lift.lift_id, amount(lift.start, 's', 2), amount(lift.duration, 's', 2)]
     if isinstance(lift.risk, Missing):
         row += ['–'] * 5
@@ -89,7 +89,6 @@ def _overview(lift: LiftReport, data: ReportData) -> list[str]:
         row += [*peaks[:2], amount(risk.avoidable_compression, 'N'), *peaks[2:]]
     lifting = lift.lifting
     row.append('–' if isinstance(lifting, Missing) else amount(lifting.lifting_index, digits=2))
-    zone = 'not assessed' if isinstance(lift.risk, Missing) else ZONES[lift.risk.zone]
     if isinstance(data.alarms, Missing):
         return [*row, zone, '–']
     active = (a for a in data.alarms if a.state == 'UNACKNOWLEDGED_ACTIVE')
