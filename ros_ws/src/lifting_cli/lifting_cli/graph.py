@@ -6,15 +6,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from typing import Any
 
 from lifecycle_msgs.msg import Transition
-from lifecycle_msgs.srv import ChangeState
-from rclpy.client import Client
 from rclpy.executors import Executor
 from rclpy.node import Node
 
 from lifting_cli.graph_errors import TransitionError
+from lifting_cli.lifecycle_change import LifecycleChange
 from lifting_cli.node_process import NodeProcess, stop_all
 
 #: Time [s] a node has for one lifecycle transition; the first start compiles the models.
@@ -81,32 +79,34 @@ class Graph:
         began = time.monotonic()
         deadline = began + TRANSITION_TIMEOUT
         patient = True
-        clients: dict[str, Client] = {
-            process.name: self._node.create_client(
-                ChangeState, f'/{self._station}/{process.name}/change_state'
+        changes = {
+            process.name: LifecycleChange(
+                self._node, f'/{self._station}/{process.name}', transition
             )
             for process in self.processes
         }
-        futures: dict[str, Any] = {}
-        while len(futures) < len(clients) or not all(f.done() for f in futures.values()):
-            self.check()
-            for node_name, client in clients.items():
-                if node_name not in futures and client.service_is_ready():
-                    request = ChangeState.Request(transition=Transition(id=transition))
-                    futures[node_name] = client.call_async(request)
-            waiting = [n for n in clients if n not in futures or not futures[n].done()]
-            if time.monotonic() > deadline:
-                raise TransitionError(f'{name}: no answer from {", ".join(waiting)}')
-            if patient and waiting and time.monotonic() > began + PATIENCE:
-                patient = False
-                self._say(
-                    f'waiting for {", ".join(waiting)} to {name}: after a change of the '
-                    'code they compile their models, which takes a minute or two'
-                )
-            self._executor.spin_once(timeout_sec=0.02)
-        for client in clients.values():
-            self._node.destroy_client(client)
-        refused = [n for n, future in futures.items() if not future.result().success]
+        try:
+            while waiting := [n for n, change in changes.items() if change.success is None]:
+                self.check()
+                now = time.monotonic()
+                if now > deadline:
+                    raise TransitionError(f'{name}: no answer from {self._logs(waiting)}')
+                if patient and now > began + PATIENCE:
+                    patient = False
+                    self._say(
+                        f'waiting for {", ".join(waiting)} to {name}: after a change of the '
+                        'code they compile their models, which takes a minute or two'
+                    )
+                for node_name in waiting:
+                    changes[node_name].poll()
+                self._executor.spin_once(timeout_sec=0.02)
+        finally:
+            for change in changes.values():
+                change.close()
+        refused = [n for n, change in changes.items() if not change.success]
         if refused:
-            logs = ', '.join(str(p.log) for p in self.processes if p.name in refused)
-            raise TransitionError(f'{", ".join(refused)} refused to {name}; see {logs}')
+            raise TransitionError(f'refused to {name}: {self._logs(refused)}')
+
+    def _logs(self, names: list[str]) -> str:
+        """Return names of nodes, each with its log."""
+        return ', '.join(f'{p.name} (see {p.log})' for p in self.processes if p.name in names)

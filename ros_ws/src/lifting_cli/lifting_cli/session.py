@@ -296,7 +296,7 @@ class _Session:
                 self._step()
             if player.process.returncode != 0:
                 player.check()
-            response = self._call(Trigger, 'motion_tracker/flush', Trigger.Request())
+            response = self._call(Trigger, 'motion_tracker/flush', Trigger.Request(), again=5.0)
             if not response.success:
                 self._view.warn(response.message)
             deadline = time.monotonic() + self._options.settle_timeout
