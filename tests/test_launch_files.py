@@ -66,8 +66,8 @@ def test_launch_file_starts_executables_that_exist(path, stand_ins):
     assert stand_ins.call_args_list, f'{path} starts no lifecycle node'
     for call in stand_ins.call_args_list:
         package, executable = call.kwargs['package'], call.kwargs['executable']
-        setup = (SOURCE / package / 'setup.py').read_text(encoding='utf-8')
-        assert re.search(rf"'{executable} *= *{package}\.\w+:main'", setup)
+        setup = (SOURCE / package / 'setup.cfg').read_text(encoding='utf-8')
+        assert re.search(rf'^ +{executable} = {package}\.\w+:main$', setup, re.MULTILINE)
 
 
 @pytest.mark.parametrize('node', NODES)

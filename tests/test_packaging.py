@@ -5,15 +5,22 @@
 from __future__ import annotations
 
 import ast
+import json
 import os
 import re
+import subprocess
 import sys
 import tomllib
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import pytest
+import yaml
+
+import human_model
 
 ROOT = Path(__file__).resolve().parents[1]
 SOURCES = ROOT / 'ros_ws' / 'src'
@@ -38,6 +45,20 @@ TEXT_SUFFIXES = CODE_SUFFIXES | {
     '.trc',
 }
 MAXIMUM_LINES = 400
+READ_METADATA = """
+import json, os, sys, setuptools
+from distutils.core import run_setup
+for folder in sys.argv[1:]:
+    os.chdir(folder)
+    found = run_setup('setup.py', stop_after='config')
+    print(json.dumps({
+        'name': found.get_name(), 'version': found.get_version(), 'license': found.get_license(),
+        'description': found.get_description(), 'maintainer': found.get_maintainer_email(),
+        'packages': found.packages, 'entry_points': found.entry_points,
+        'requires': found.install_requires, 'extras': found.extras_require,
+        'data_files': dict(found.data_files), 'scripts': found.get_option_dict('install'),
+    }))
+"""
 HEADER = (
     '# SPDX-FileCopyrightText: 2026 The lift monitor authors\n'
     '# SPDX-License-Identifier: Apache-2.0\n'
@@ -59,6 +80,8 @@ ROSDEP_KEYS = {
 }
 # Imported module -> wheel, where the names differ. lz4 and backports.zstd come with rosbags.
 WHEELS = {'backports': 'rosbags', 'lz4': 'rosbags', 'yaml': 'pyyaml'}
+# muscle_analyzer's script for OpenSim runs in OpenSim's own environment (make opensim).
+OTHER_ENVIRONMENT = {'opensim'}
 # Of the extra `ros`, or of a ROS 2 installation; beside the packages of messages.
 FROM_ROS = {
     'ament_index_python',
@@ -107,23 +130,25 @@ def dependencies(root: ElementTree.Element, *tags: str) -> set[str]:
     return {element.text.strip() for tag in tags for element in root.iter(tag) if element.text}
 
 
-def setup_arguments(package: Path) -> dict[str, object]:
-    """Return the literal keyword arguments of setup()."""
-    tree = ast.parse((package / 'setup.py').read_text())
-    call = next(
-        node
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Call)
-        and isinstance(node.func, ast.Name)
-        and node.func.id == 'setup'
+@cache
+def distributions() -> dict[str, dict[str, Any]]:
+    """Return the metadata that setuptools reads in each Python package."""
+    answer = subprocess.run(
+        [sys.executable, '-c', READ_METADATA, *map(str, PYTHON_PACKAGES)],
+        check=True,
+        capture_output=True,
+        text=True,
     )
-    arguments: dict[str, object] = {}
-    for keyword in call.keywords:
-        try:
-            arguments[str(keyword.arg)] = ast.literal_eval(keyword.value)
-        except ValueError:
-            continue
-    return arguments
+    return {
+        path.name: json.loads(line)
+        for path, line in zip(PYTHON_PACKAGES, answer.stdout.splitlines(), strict=True)
+    }
+
+
+def wheels(modules: set[str]) -> set[str]:
+    """Return the wheels from PyPI that provide the modules."""
+    others = {name for name in modules if name in OWN | FROM_ROS or name.endswith('_msgs')}
+    return {WHEELS.get(name, name) for name in modules - others}
 
 
 def imported_modules(package: Path) -> set[str]:
@@ -135,7 +160,11 @@ def imported_modules(package: Path) -> set[str]:
                 found |= {alias.name.split('.')[0] for alias in node.names}
             elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
                 found.add(node.module.split('.')[0])
-    return found - STANDARD_LIBRARY - {package.name}
+            elif isinstance(node, ast.Call) and 'import_module' in ast.unparse(node.func):
+                name = node.args[0]
+                if isinstance(name, ast.Constant):
+                    found.add(str(name.value).split('.')[0])
+    return found - STANDARD_LIBRARY - OTHER_ENVIRONMENT - {package.name}
 
 
 def test_workspace_has_the_packages_of_the_graph() -> None:
@@ -160,28 +189,51 @@ def test_manifest_is_complete(package: Path) -> None:
     assert root.get('format') == '3'
     assert field(root, 'name') == package.name
     assert field(root, 'license') == 'Apache-2.0'
-    assert field(root, 'version') == PROJECT['version']
     assert len(field(root, 'description')) > 40
     assert (package / 'README.md').stat().st_size > 200
 
 
+def test_one_version() -> None:
+    """The manifests, which colcon reads, and the citation repeat the version of human_model."""
+    found = {path.name: field(manifest(path), 'version') for path in PACKAGES}
+    found['CITATION.cff'] = yaml.safe_load((ROOT / 'CITATION.cff').read_text())['version']
+    assert found == dict.fromkeys(found, human_model.__version__)
+    assert 'version' in PROJECT['dynamic']
+
+
+def test_setup_files_are_the_same() -> None:
+    assert len({(package / 'setup.py').read_text() for package in PYTHON_PACKAGES}) == 1
+
+
 @pytest.mark.parametrize('package', PYTHON_PACKAGES, ids=lambda path: path.name)
-def test_setup_agrees_with_manifest(package: Path) -> None:
-    root, arguments = manifest(package), setup_arguments(package)
-    assert arguments['version'] == field(root, 'version')
-    assert arguments['license'] == field(root, 'license')
-    assert arguments['description'] == field(root, 'description')
-    assert (package / 'resource' / package.name).exists()
-    if arguments.get('packages') != []:
-        assert (package / package.name / 'py.typed').exists()
+def test_setup_reads_the_manifest(package: Path) -> None:
+    root, found = manifest(package), distributions()[package.name]
+    for key in ('name', 'version', 'license', 'description'):
+        assert found[key] == field(root, key)
+    assert found['maintainer'].endswith('.example')
+    assert found['scripts']['install_scripts'][1] == f'$base/lib/{package.name}'
+    (marker,) = found['data_files']['share/ament_index/resource_index/packages']
+    assert marker == f'resource/{package.name}' and (package / marker).exists()
+    assert found['data_files'][f'share/{package.name}'] == ['package.xml']
     assert field(root, 'export/build_type') == 'ament_python'
+    if (package / package.name).exists():
+        assert package.name in found['packages']
+        assert not [name for name in found['packages'] if name.split('.')[0] != package.name]
+        assert (package / package.name / 'py.typed').exists()
+
+
+@pytest.mark.parametrize('package', PYTHON_PACKAGES, ids=lambda path: path.name)
+def test_setup_requires_the_imported_wheels(package: Path) -> None:
+    """`pip install` of one folder brings the Python packages that it imports."""
+    found = distributions()[package.name]
+    extras = {name for extra in found['extras'].values() for name in extra}
+    assert {*found['requires'], *extras} == wheels(imported_modules(package))
 
 
 @pytest.mark.parametrize('package', PYTHON_PACKAGES, ids=lambda path: path.name)
 def test_entry_points_exist(package: Path) -> None:
-    entry_points = setup_arguments(package).get('entry_points', {})
-    assert isinstance(entry_points, dict)
-    for entry in entry_points.get('console_scripts', []):
+    groups = distributions()[package.name]['entry_points'] or {}
+    for entry in groups.get('console_scripts', []):
         module, _, function = entry.split('=')[1].strip().partition(':')
         path = (package / module.replace('.', '/')).with_suffix('.py')
         assert path.exists(), f'{entry}: there is no {path.relative_to(ROOT)}'
@@ -206,16 +258,16 @@ def test_manifest_names_what_is_imported(package: Path) -> None:
     assert not unused, f'package.xml names {sorted(unused)}, which nothing imports'
 
 
-def test_wheel_requires_what_is_imported() -> None:
-    """The dependencies of the wheel are those of the environment, and cover the imports."""
+def test_wheel_requires_what_the_packages_require() -> None:
+    """The dependencies of the wheel are those of its packages, and the locked ones."""
     extras = PROJECT['optional-dependencies']
+    packages = distributions().values()
+    assert set(PROJECT['dependencies']) == {name for one in packages for name in one['requires']}
+    studies = {name for one in packages for name in one['extras'].get('study', [])}
+    assert set(extras['study']) == studies
     required = {*PROJECT['dependencies'], *(name for extra in extras.values() for name in extra)}
     lines = (ROOT / 'requirements' / 'runtime.in').read_text().splitlines()
     assert required == {line for line in lines if not line.startswith('#')}
-    imported = set().union(*map(imported_modules, PYTHON_PACKAGES)) - OWN - FROM_ROS
-    imported = {module for module in imported if not module.endswith('_msgs')}
-    wheels = {WHEELS.get(module, module) for module in imported}
-    assert wheels <= required, f'pyproject.toml lacks {sorted(wheels - required)}'
 
 
 def test_interface_dependencies_are_those_used() -> None:

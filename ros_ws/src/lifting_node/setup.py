@@ -1,30 +1,46 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Packaging of lifting_node for colcon and pip."""
+"""Packaging for colcon and pip, the same file in every package.
+
+The metadata are in package.xml, the entry points in setup.cfg.
+"""
 
 from glob import glob
+from xml.etree import ElementTree
 
 from setuptools import find_packages, setup
 
-package_name = 'lifting_node'
+#: Wheels whose names differ from the rosdep key without `python3-` and `-pip`.
+WHEELS = {'yaml': 'pyyaml'}
+
+manifest = ElementTree.parse('package.xml').getroot()
+name = manifest.findtext('name')
+maintainer = manifest.find('maintainer')
+# Packages of ROS and of this workspace come from the workspace: PyPI does not have them.
+keys = [element.text for element in manifest.findall('exec_depend')]
+wheels = [
+    key.removeprefix('python3-').removesuffix('-pip') for key in keys if key.startswith('python3-')
+]
+extras = {}
+for element in manifest.findall('export/pip'):  # without a rosdep key
+    extras.setdefault(element.get('extra', ''), []).append(element.text)
 
 setup(
-    name=package_name,
-    version='0.1.0',
+    name=name,
+    version=manifest.findtext('version'),
+    description=manifest.findtext('description'),
+    maintainer=maintainer.text,
+    maintainer_email=maintainer.get('email'),
+    license=manifest.findtext('license'),
     packages=find_packages(exclude=['test']),
-    package_data={'': ['py.typed', 'data/**/*']},
+    package_data={'': ['py.typed', 'data/**/*', 'templates/*']},
     data_files=[
-        ('share/ament_index/resource_index/packages', ['resource/' + package_name]),
-        ('share/' + package_name, ['package.xml']),
-        ('share/' + package_name + '/config', glob('config/*.yaml')),
-        ('share/' + package_name + '/launch', glob('launch/*.launch.py')),
+        ('share/ament_index/resource_index/packages', [f'resource/{name}']),
+        (f'share/{name}', ['package.xml']),
+        (f'share/{name}/config', glob('config/*.*')),
+        (f'share/{name}/launch', glob('launch/*.launch.py')),
     ],
+    install_requires=[WHEELS.get(wheel, wheel) for wheel in wheels] + extras.pop('', []),
+    extras_require=extras,
     zip_safe=False,
-    maintainer='The lift monitor authors',
-    maintainer_email='maintainers@lift-monitor.example',
-    description=(
-        'What the lifecycle nodes of the lift monitor share: parameters, quality of '
-        'service and diagnostics.'
-    ),
-    license='Apache-2.0',
 )

@@ -17,6 +17,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING
 
+from human_model import __version__
+
 if TYPE_CHECKING:
     from human_model.motion import BodyMotion
     from human_model.skeletons import Skeleton3D
@@ -50,6 +52,7 @@ __all__ = [
     'Subject',
     'Tracking',
     'Work',
+    '__version__',
     'analyze',
     'assess',
     'lifting_equation',

@@ -1,5 +1,3 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
 """The lift command."""
-
-__version__ = '0.1.0'

@@ -1,3 +1,3 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the lifecycle nodes share: parameters, quality of service, health."""
+"""Common parts of the lifecycle nodes: parameters, quality of service, diagnostics."""

@@ -6,5 +6,3 @@ from lifting_report.page import build_report
 from lifting_report.report_data import ReportData
 
 __all__ = ['ReportData', 'build_report']
-
-__version__ = '0.1.0'

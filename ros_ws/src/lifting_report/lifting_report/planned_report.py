@@ -9,13 +9,13 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+from human_model import __version__
 from human_model.exceptions import HumanModelError
 from lift_predictor import conversions as predictor_messages
 from lift_predictor.core.exceptions import LiftPredictorError
 from lift_predictor.core.models.sagittal.person import Person
 from lift_predictor.core.planning.planned_lift import PlannedLift
 from lift_predictor.core.planning.task_file import TaskFile
-from lifting_report import __version__
 from lifting_report import results_curves as curves
 from lifting_report.figures.loads import LimitLine
 from lifting_report.pages import Card, amount

@@ -10,6 +10,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+from human_model import __version__
 from human_model.exceptions import HumanModelError
 from human_model.report import SolveStatus
 from injury_monitor.core.alarm import AlarmState
@@ -18,7 +19,6 @@ from lift_predictor.core.models.sagittal.person import Person
 from lifting_messages import message_type
 from lifting_messages.conversions import subject_from_msg
 from lifting_recordings.exceptions import BagError
-from lifting_report import __version__
 from lifting_report import results_curves as curves
 from lifting_report.assessed import lifting_from_assessment, risk_from_assessment
 from lifting_report.page import build_report
