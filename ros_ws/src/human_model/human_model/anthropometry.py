@@ -18,7 +18,7 @@ from human_model.exceptions import AnthropometryError
 from human_model.frames import ROS_FROM_OPENSIM
 from human_model.inertia import combine, positive_inertia, rotate
 from human_model.subject import Subject
-from human_model.tables import length_sum, read_table
+from human_model.tables import Row, length_sum, read_table
 from human_model.typing import Array
 
 #: Share of the foot's mass that is in the toes, and the toes' centre of mass and inertia, from
@@ -32,6 +32,9 @@ LIMBS = ('upper_arm', 'forearm', 'hand', 'thigh', 'shank', 'foot', 'toes')
 _OFFSETS = ('l5s1_forward', 'sacrum_forward', 't12l1_forward', 'shoulder_forward', 'c7_forward')
 #: Lengths that may be zero (the thesis' skeletons have no such offset).
 _MAY_BE_ZERO = ('l5s1_height', 'ankle_height', 'heel_length', 'mtp_drop', 'hand_grip')
+#: Columns of the centre of mass and of the signed radii of gyration.
+_COM = ('com_x', 'com_y', 'com_z')
+_RADII = ('r_xx', 'r_yy', 'r_zz', 'r_xy', 'r_xz', 'r_yz')
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,13 +104,11 @@ _PALM_IN = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 def body_dimensions(sex: str, stature: float, mass: float) -> dict[str, float]:
     """ANSUR II body dimensions [m] by regression on stature [m] and mass [kg]."""
     dimensions = {'stature': stature}
-    for row in read_table('ansur2_regressions'):
+    columns = 'sex dimension constant per_stature per_mass'
+    for row in read_table('human_model', 'ansur2_regressions.csv', columns):
         if row['sex'] == sex:
-            dimensions[row['dimension']] = (
-                float(row['constant'])
-                + float(row['per_stature']) * stature
-                + float(row['per_mass']) * mass
-            )
+            constant, per_stature, per_mass = row.numbers('constant', 'per_stature', 'per_mass')
+            dimensions[row['dimension']] = constant + per_stature * stature + per_mass * mass
     return dimensions
 
 
@@ -122,7 +123,9 @@ def segment_lengths(subject: Subject) -> tuple[dict[str, float], dict[str, str]]
         If a measured length has an unknown name or a length comes out not positive.
     """
     measured = {**(subject.calibration.lengths if subject.calibration else {}), **subject.lengths}
-    table = [row for row in read_table('segment_lengths') if row['sex'] in ('both', subject.sex)]
+    columns = 'length sex reference reference_stature reference_mass scale_by terms'
+    rows = read_table('human_model', 'segment_lengths.csv', columns)
+    table = [row for row in rows if row['sex'] in ('both', subject.sex)]
     unknown = sorted(set(measured) - {row['length'] for row in table})
     if unknown:
         raise AnthropometryError(
@@ -136,10 +139,10 @@ def segment_lengths(subject: Subject) -> tuple[dict[str, float], dict[str, str]]
             # The generic full-body models are men; other references are of the subject's sex.
             reference = body_dimensions(
                 'male' if row['sex'] == 'both' else subject.sex,
-                float(row['reference_stature']),
-                float(row['reference_mass']),
+                row.number('reference_stature'),
+                row.number('reference_mass'),
             )
-            value = float(row['reference']) * own[row['scale_by']] / reference[row['scale_by']]
+            value = row.number('reference') * own[row['scale_by']] / reference[row['scale_by']]
         else:
             value = length_sum(row['terms'], {**own, **predicted})
         predicted[row['length']] = value
@@ -188,10 +191,15 @@ def segment_parameters(subject: Subject) -> SegmentParameters:
 
 def _fraction_sum(sex: str) -> float:
     return sum(
-        float(row['mass_fraction']) * (1 if row['segment'] in TRUNK else 2)
-        for row in read_table('dumas_inertia')
-        if row['sex'] == sex
+        row.number('mass_fraction') * (1 if row['segment'] in TRUNK else 2)
+        for row in _dumas_rows(sex)
     )
+
+
+def _dumas_rows(sex: str) -> list[Row]:
+    columns = ' '.join(('sex segment mass_fraction', *_COM, *_RADII))
+    rows = read_table('human_model', 'dumas_inertia.csv', columns)
+    return [row for row in rows if row['sex'] == sex]
 
 
 def _long_axes(lengths: Mapping[str, float]) -> dict[str, Array]:
@@ -220,14 +228,12 @@ def _dumas_bodies(sex: str, lengths: Mapping[str, float]) -> dict[str, tuple[flo
         'foot': float(np.hypot(lengths['ankle_mtp'], lengths['mtp_drop'])),
     }
     right: dict[str, tuple[float, Array, Array]] = {}
-    for row in read_table('dumas_inertia'):
-        if row['sex'] != sex:
-            continue
+    for row in _dumas_rows(sex):
         name = row['segment']
         turn = _upright_to(axes[name]) if name in axes else np.eye(3)
         length = sizes.get(name, float(np.linalg.norm(axes.get(name, 0.0))))
-        mass = float(row['mass_fraction'])
-        com = np.array([float(row[key]) for key in ('com_x', 'com_y', 'com_z')]) * length
+        mass = row.number('mass_fraction')
+        com = np.array(row.numbers(*_COM)) * length
         inertia = _dumas_tensor(row) * mass * length**2
         if name in ('forearm', 'hand'):
             turn = _PALM_IN
@@ -242,13 +248,10 @@ def _dumas_bodies(sex: str, lengths: Mapping[str, float]) -> dict[str, tuple[flo
     return bodies
 
 
-def _dumas_tensor(row: Mapping[str, str]) -> Array:
+def _dumas_tensor(row: Row) -> Array:
     """Tensor per m L^2 in ISB axes: diagonal r^2, off-diagonal sign(r) r^2."""
-    r = {key: float(row[f'r_{key}']) for key in ('xx', 'yy', 'zz', 'xy', 'xz', 'yz')}
-    s = {key: value * abs(value) for key, value in r.items()}
-    return np.array(
-        [[s['xx'], s['xy'], s['xz']], [s['xy'], s['yy'], s['yz']], [s['xz'], s['yz'], s['zz']]]
-    )
+    xx, yy, zz, xy, xz, yz = (radius * abs(radius) for radius in row.numbers(*_RADII))
+    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 
 
 def _upright_to(direction: Array) -> Array:
@@ -276,12 +279,13 @@ def _split_foot(
     foot: tuple[float, Array, Array], lengths: Mapping[str, float]
 ) -> tuple[tuple[float, Array, Array], tuple[float, Array, Array]]:
     """Divide Dumas' foot into hindfoot (origin ankle) and toes (origin MTP joint)."""
-    row = read_table('toes_inertia')[0]
-    scale = lengths['toes'] / float(row['length'])
+    columns = 'length mass com_x com_z i_xx i_yy i_zz'
+    row = read_table('human_model', 'toes_inertia.csv', columns)[0]
+    scale = lengths['toes'] / row.number('length')
     mass = foot[0] * TOES_MASS_FRACTION
-    com = np.array([float(row['com_x']), 0.0, float(row['com_z'])]) * scale
-    inertia = np.diag([float(row[key]) for key in ('i_xx', 'i_yy', 'i_zz')])
-    inertia = inertia * scale**2 * (mass / float(row['mass']))
+    forward, up = row.numbers('com_x', 'com_z')
+    com = np.array([forward, 0.0, up]) * scale
+    inertia = np.diag(row.numbers('i_xx', 'i_yy', 'i_zz')) * scale**2 * (mass / row.number('mass'))
     to_ankle = np.array([lengths['ankle_mtp'], 0.0, -lengths['mtp_drop']])
     hindfoot = combine([foot, (-mass, com + to_ankle, -inertia)])
     return hindfoot, (mass, com, inertia)

@@ -19,6 +19,9 @@ from human_model.tables import length_sum, read_table
 from human_model.typing import Array
 
 _ANGLES = {'0': 0.0, 'pi': pi, 'pi/2': pi / 2, '-pi/2': -pi / 2, '-pi': -pi}
+_KINDS = {kind: kind for kind in ('fixed', 'revolute', 'prismatic')}
+_SIGNS = {'1': 1, '-1': -1}
+_COLUMNS = 'row coordinate kind parent sign theta d a alpha segment branch'
 
 
 def dh_transform(theta: float, d: float, a: float, alpha: float) -> Array:
@@ -117,33 +120,29 @@ def load_chain(name: str, lengths: Mapping[str, float]) -> Chain:
 
     Raises
     ------
+    TableError
+        If a kind, sign or angle is not valid, or a row's parent comes after it.
     ChainError
-        If a row's parent comes after it, or a kind, sign, angle or name is not valid.
+        If a coordinate or segment occurs twice.
     """
     rows: list[DHRow] = []
-    for i, line in enumerate(read_table(f'dh_{name}')):
-        where = f'dh_{name}.csv, row {line["row"]}'
-        parent = int(line['parent']) - 1
-        if int(line['row']) != i + 1 or not -1 <= parent < i:
-            raise ChainError(f'{where}: rows must be numbered and follow their parents')
-        kind, coordinate = line['kind'], line['coordinate']
-        if kind not in ('fixed', 'revolute', 'prismatic') or (kind == 'fixed') == bool(coordinate):
-            raise ChainError(f'{where}: kind {kind!r} with coordinate {coordinate!r}')
-        if line['sign'] not in ('1', '-1'):
-            raise ChainError(f'{where}: sign {line["sign"]!r} is neither 1 nor -1')
-        for angle in ('theta', 'alpha'):
-            if line[angle] not in _ANGLES:
-                raise ChainError(f'{where}: {angle} {line[angle]!r} is not a quarter turn')
+    for i, line in enumerate(read_table('human_model', f'dh_{name}.csv', _COLUMNS)):
+        parent = line.whole('parent') - 1
+        if line.whole('row') != i + 1 or not -1 <= parent < i:
+            raise line.error('parent', 'rows must be numbered and follow their parents')
+        kind, coordinate = line.choice('kind', _KINDS), line['coordinate']
+        if (kind == 'fixed') == bool(coordinate):
+            raise line.error('coordinate', f'a row of kind {kind} cannot have this coordinate')
         rows.append(
             DHRow(
                 coordinate=coordinate,
                 kind=kind,
                 parent=parent,
-                sign=int(line['sign']),
-                theta=_ANGLES[line['theta']],
+                sign=line.choice('sign', _SIGNS),
+                theta=line.choice('theta', _ANGLES),
                 d=length_sum(line['d'], lengths),
                 a=length_sum(line['a'], lengths),
-                alpha=_ANGLES[line['alpha']],
+                alpha=line.choice('alpha', _ANGLES),
                 segment=line['segment'],
                 branch=line['branch'],
             )

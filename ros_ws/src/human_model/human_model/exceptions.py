@@ -31,5 +31,32 @@ class StrengthError(HumanModelError):
     """A joint strength is asked for that the tables do not hold."""
 
 
+class TableError(HumanModelError):
+    """A table cannot be read, or a cell of it has a wrong value.
+
+    Parameters
+    ----------
+    file : str
+    line : int
+        From 1; 0: the whole file.
+    column : str
+        Empty: the whole line.
+    value : object
+        Content that was refused; None: there is none.
+    problem : str
+        Requirement on the content.
+    """
+
+    def __init__(self, file: str, line: int, column: str, value: object, problem: str) -> None:
+        place = f'{file}' + (f', line {line}' if line else '')
+        place += f', column {column!r}' if column else ''
+        found = '' if value is None else f', found {value!r}'
+        super().__init__(f'{place}: {problem}{found}')
+        self.file = file
+        self.line = line
+        self.column = column
+        self.value = value
+
+
 class FieldError(HumanModelError):
     """A field of a file is missing, unknown or has a wrong value."""

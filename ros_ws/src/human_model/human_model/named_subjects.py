@@ -23,12 +23,12 @@ from human_model.anthropometry import (
 )
 from human_model.exceptions import SubjectError
 from human_model.subject import Subject
-from human_model.tables import length_sum, read_table
+from human_model.tables import Row, length_sum, read_table
 
 
 def subject_names() -> tuple[str, ...]:
     """Names of the subjects that come with the package."""
-    return tuple(row['name'] for row in read_table('subjects'))
+    return tuple(_subjects())
 
 
 def named_subject(name: str) -> Subject:
@@ -39,19 +39,30 @@ def named_subject(name: str) -> Subject:
     SubjectError
         If there is no subject of that name.
     """
-    rows = {row['name']: row for row in read_table('subjects')}
+    rows = _subjects()
     if name not in rows:
         raise SubjectError(f'no subject named {name!r}; there are {", ".join(rows)}')
     row = rows[name]
     return Subject(
         pseudonym=name,
         sex=row['sex'],
-        mass=float(row['mass']),
-        stature=float(row['stature']),
-        age=float(row['age']),
-        strength_z=float(row['strength_z']),
+        mass=row.number('mass'),
+        stature=row.number('stature'),
+        age=row.number('age'),
+        strength_z=row.number('strength_z'),
         lengths=_lengths(name),
     )
+
+
+def _subjects() -> dict[str, Row]:
+    rows = read_table('human_model', 'subjects.csv', 'name sex mass stature age strength_z')
+    return {row['name']: row for row in rows}
+
+
+def _links(name: str, key: str, columns: str) -> dict[str, Row]:
+    """Return the printed links of a named subject by the name in a column."""
+    rows = read_table('human_model', f'{name}_links.csv', f'{key} {columns}')
+    return {row[key]: row for row in rows}
 
 
 def named_parameters(name: str) -> SegmentParameters:
@@ -66,12 +77,13 @@ def named_parameters(name: str) -> SegmentParameters:
 
 
 def _lengths(name: str) -> dict[str, float]:
-    rows = [row for row in read_table('thesis_lengths') if row['subject'] == name]
+    table = read_table('human_model', 'thesis_lengths.csv', 'subject length factor link plus')
+    rows = [row for row in table if row['subject'] == name]
     if not rows:
         return {}
-    links = {row['link']: float(row['length']) for row in read_table(f'{name}_links')}
+    links = {link: row.number('length') for link, row in _links(name, 'link', 'length').items()}
     return {
-        row['length']: float(row['factor']) * links[row['link']] + length_sum(row['plus'], links)
+        row['length']: row.number('factor') * links[row['link']] + length_sum(row['plus'], links)
         for row in rows
     }
 
@@ -85,19 +97,19 @@ def _thesis_2d(subject: Subject) -> SegmentParameters:
     """
     generic = sagittal_parameters(segment_parameters(replace(subject, lengths={})))
     lengths = segment_lengths(subject)[0]
-    printed = {row['segment']: row for row in read_table('thesis_2d_links')}
+    printed = _links('thesis_2d', 'segment', 'length mass inertia_zz')
     n = len(generic.segments)
     mass, com, inertia = np.zeros(n), np.zeros((n, 3)), np.zeros((n, 3, 3))
     for i, segment in enumerate(generic.segments):
         if segment == 'pelvis':
             continue
-        mass[i] = float(printed[segment]['mass'])
-        half = float(printed[segment]['length']) / 2
+        mass[i] = printed[segment].number('mass')
+        half = printed[segment].number('length') / 2
         if segment in ('foot', 'toes'):
             com[i, 0] = half
         else:
             com[i, 2] = half if segment == 'trunk' else -half
-        central = float(printed[segment]['inertia_zz']) - mass[i] * half**2
+        central = printed[segment].number('inertia_zz') - mass[i] * half**2
         inertia[i] = generic.inertia[i] * (central / generic.inertia[i, 1, 1])
     return SegmentParameters(
         lengths,
@@ -125,7 +137,7 @@ def _thesis_3d(subject: Subject) -> SegmentParameters:
         name: value for name, value in subject.lengths.items() if name not in ('ankle_mtp', 'toes')
     }
     parameters = segment_parameters(replace(subject, lengths=body))
-    link = {row['link']: float(row['mass']) for row in read_table('thesis_3d_links')}
+    link = {name: row.number('mass') for name, row in _links('thesis_3d', 'link', 'mass').items()}
     torso = link['L2'] + link['L4']
     share = parameters.mass / parameters.mass[parameters.index('lumbar')]
     thorax = share[parameters.index('thorax')]

@@ -17,7 +17,7 @@ from human_model.dh import Chain, load_chain
 from human_model.exceptions import ChainError, MotionError
 from human_model.frames import quaternion_from_matrix
 from human_model.motion import FRAMES, POINTS, BodyMotion
-from human_model.tables import length_sum, read_table
+from human_model.tables import Row, length_sum, read_table
 from human_model.tree import TreeArrays, build_tree, segment_points
 from human_model.typing import Array, IntArray
 
@@ -29,6 +29,11 @@ _LEFT_OUT: dict[str, tuple[tuple[int, ...], float]] = {
     'hand_force': ((2, 3), 0.0),
     'box_position': ((3,), np.nan),
 }
+
+
+def _rows(skeleton: str, table: str, columns: str) -> list[Row]:
+    rows = read_table('human_model', table, f'skeleton {columns}')
+    return [row for row in rows if row['skeleton'] == skeleton]
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,9 +87,8 @@ class Skeleton:
         self.coordinates: tuple[str, ...] = self.chain.coordinates
         self.segments: tuple[str, ...] = parameters.segments
         limits = {
-            row['coordinate']: (float(row['lower']), float(row['upper']))
-            for row in read_table('joint_limits')
-            if row['skeleton'] == name
+            row['coordinate']: row.numbers('lower', 'upper')
+            for row in _rows(name, 'joint_limits.csv', 'coordinate lower upper')
         }
         if set(limits) != set(self.coordinates):
             raise ChainError(f'joint_limits.csv: coordinates of {name} differ from its chain')
@@ -95,11 +99,10 @@ class Skeleton:
                 row['segment'],
                 np.array([length_sum(row[axis], parameters.lengths) for axis in 'xyz']),
             )
-            for row in read_table('points')
-            if row['skeleton'] == name
+            for row in _rows(name, 'points.csv', 'point segment x y z')
         }
         frames = {
-            row['frame']: row['segment'] for row in read_table('frames') if row['skeleton'] == name
+            row['frame']: row['segment'] for row in _rows(name, 'frames.csv', 'frame segment')
         }
         self._points = {point: located[point] for point in POINTS}
         self.point_segment, self.point_local = segment_points(self._points, self.segments)

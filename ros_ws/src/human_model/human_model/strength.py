@@ -13,7 +13,6 @@ angle and speed. Upper limits act in the coordinate's positive direction; lower 
 Torques for which nothing is published get the large fixed bound `LARGE`.
 """
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -23,13 +22,14 @@ import numpy.typing as npt
 from human_model.constants import GRAVITY
 from human_model.exceptions import StrengthError
 from human_model.subject import Subject
-from human_model.tables import read_table
+from human_model.tables import Row, read_table
 from human_model.typing import Array
 
 #: Bound [N m] of one limb's joint torque where no strength is published: no strength but a number
 #: that is large against every measured peak (the largest is the trunk's 328.5 N m).
 LARGE = 1000.0
 
+_COEFFICIENTS = tuple(f'c{k}' for k in range(1, 9))
 #: The coefficients of a constant surface: tau_peak = 1.
 _CONSTANT = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0)
 
@@ -88,9 +88,14 @@ def surface_gradient(coefficients: npt.ArrayLike, q: Array, v: Array) -> tuple[A
     )
 
 
+def _surfaces() -> tuple[Row, ...]:
+    columns = ('set joint direction sex age_low age_high unit scale cv', *_COEFFICIENTS)
+    return read_table('human_model', 'strength_surfaces.csv', ' '.join(columns))
+
+
 def coefficient_sets() -> tuple[str, ...]:
     """Names of the coefficient sets."""
-    return tuple(dict.fromkeys(row['set'] for row in read_table('strength_surfaces')))
+    return tuple(dict.fromkeys(row['set'] for row in _surfaces()))
 
 
 @dataclass(frozen=True)
@@ -151,7 +156,8 @@ class JointStrength:
         self.skeleton = skeleton
         self.coefficient_set = coefficient_set
         bounds: dict[str, dict[str, StrengthBound]] = {}
-        for row in read_table('strength_map'):
+        columns = 'skeleton coordinate bound joint direction angle_factor speed_factor copies'
+        for row in read_table('human_model', 'strength_map.csv', columns):
             if row['skeleton'] == skeleton:
                 bounds.setdefault(row['coordinate'], {})[row['bound']] = _bound(
                     row, subject, coefficient_set
@@ -190,15 +196,15 @@ class JointStrength:
         return lower, upper
 
 
-def _bound(row: Mapping[str, str], subject: Subject, coefficient_set: str) -> StrengthBound:
+def _bound(row: Row, subject: Subject, coefficient_set: str) -> StrengthBound:
     sign = 1.0 if row['bound'] == 'upper' else -1.0
-    copies = float(row['copies'])
-    factors = float(row['angle_factor']), float(row['speed_factor'])
+    copies = row.number('copies')
+    factors = row.number('angle_factor'), row.number('speed_factor')
     if row['joint'] == 'none':
         return StrengthBound(_CONSTANT, sign * copies * LARGE, *factors, row['source'])
     found = [
         data
-        for data in read_table('strength_surfaces')
+        for data in _surfaces()
         if data['set'] == coefficient_set
         and data['joint'] == row['joint']
         and data['direction'] == row['direction']
@@ -210,23 +216,23 @@ def _bound(row: Mapping[str, str], subject: Subject, coefficient_set: str) -> St
             f'{row["joint"]} {row["direction"]}, {subject.sex}'
         )
     data = min(found, key=lambda item: _years_off(item, subject.age))
-    scale = float(data['scale'])
+    scale = data.number('scale')
     if data['unit'] == 'mgh':
         scale *= subject.mass * GRAVITY * subject.stature
-    grade = 1.0 + subject.strength_z * float(data['cv'])
+    grade = 1.0 + subject.strength_z * data.number('cv')
     if grade <= 0.0:
         raise StrengthError(
             f'subject.strength_z: {subject.strength_z:g} with CV {data["cv"]} '
             f'leaves no {row["joint"]} {row["direction"]} strength'
         )
     return StrengthBound(
-        tuple(float(data[f'c{k}']) for k in range(1, 9)),
+        data.numbers(*_COEFFICIENTS),
         sign * copies * scale * grade,
         *factors,
         data['source'],
     )
 
 
-def _years_off(row: Mapping[str, str], age: float) -> float:
+def _years_off(row: Row, age: float) -> float:
     """Years between an age and the age group of a row; 0 inside the group."""
-    return max(float(row['age_low']) - age, age - float(row['age_high']), 0.0)
+    return max(row.number('age_low') - age, age - row.number('age_high'), 0.0)

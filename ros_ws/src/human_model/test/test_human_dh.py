@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Chain tables: transformations, and every joint axis and sign against anatomy and OpenSim."""
 
-import csv
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +9,8 @@ import pytest
 
 from human_model import dh
 from human_model.dh import DHRow, dh_transform, load_chain
-from human_model.exceptions import ChainError
+from human_model.exceptions import ChainError, TableError
+from human_model.tables import Row, read_file
 
 UP, DOWN, FORWARD, BACK = (2, 1), (2, -1), (0, 1), (0, -1)
 LEFT, RIGHT = (1, 1), (1, -1)
@@ -130,11 +130,11 @@ def test_axes_agree_with_opensim(body):
         'L5_S1_axial_rotation': 'lumbar_rotation',
     }
     path = Path(__file__).parent / 'data' / 'opensim_joint_axes.csv'
-    rows = list(csv.DictReader(path.read_text().splitlines()))
+    rows = read_file(path, 'coordinate x y z')
     assert len(rows) == 37
     for row in rows:
         name = renamed.get(row['coordinate'], row['coordinate'])
-        theirs = np.array([float(row[axis]) for axis in 'xyz'])
+        theirs = np.array(row.numbers(*'xyz'))
         ours = body.tree.axis[body.index(name)]
         angle = np.degrees(np.arccos(np.clip(theirs @ ours, -1, 1)))
         assert angle < oblique.get(base_and_side(name)[0], 0.2), (name, angle)
@@ -245,48 +245,44 @@ def test_derivatives_by_finite_differences(kind, sign):
     assert second == pytest.approx((plus - 2 * here + minus) / h**2, abs=1e-6)
 
 
+ROW = {
+    'row': '1',
+    'coordinate': 'x',
+    'kind': 'revolute',
+    'parent': '0',
+    'sign': '1',
+    'theta': '0',
+    'd': '0',
+    'a': '0',
+    'alpha': '0',
+    'segment': '',
+    'branch': '',
+}
+
+
+def tables(*rows):
+    """Return a reader of tables that gives these rows."""
+    found = tuple(Row('dh.csv', line, row) for line, row in enumerate(rows, 2))
+    return lambda package, name, columns: found
+
+
 @pytest.mark.parametrize(
     ('change', 'words'),
     [
-        ({'parent': '3'}, 'follow their parents'),
-        ({'kind': 'spherical'}, "kind 'spherical'"),
-        ({'coordinate': ''}, "kind 'revolute' with coordinate ''"),
-        ({'sign': '2'}, "sign '2'"),
-        ({'theta': 'pi/3'}, "theta 'pi/3'"),
+        ({'parent': '3'}, "'parent': rows .* follow their parents"),
+        ({'kind': 'spherical'}, "'kind': .*'spherical'"),
+        ({'coordinate': ''}, "'coordinate': a row of kind revolute .*''"),
+        ({'sign': '2'}, "'sign': .*'2'"),
+        ({'theta': 'pi/3'}, "'theta': .*'pi/3'"),
     ],
 )
 def test_bad_rows_are_named(monkeypatch, change, words):
-    good = {
-        'row': '1',
-        'coordinate': 'x',
-        'kind': 'revolute',
-        'parent': '0',
-        'sign': '1',
-        'theta': '0',
-        'd': '0',
-        'a': '0',
-        'alpha': '0',
-        'segment': '',
-        'branch': '',
-    }
-    monkeypatch.setattr(dh, 'read_table', lambda name: ({**good, **change},))
-    with pytest.raises(ChainError, match=f'row 1: .*{words}'):
+    monkeypatch.setattr(dh, 'read_table', tables({**ROW, **change}))
+    with pytest.raises(TableError, match=f'line 2, column {words}'):
         load_chain('3d_40dof', {})
 
 
 def test_a_coordinate_may_not_occur_twice(monkeypatch):
-    row = {
-        'coordinate': 'x',
-        'kind': 'revolute',
-        'parent': '0',
-        'sign': '1',
-        'theta': '0',
-        'd': '0',
-        'a': '0',
-        'alpha': '0',
-        'segment': '',
-        'branch': '',
-    }
-    monkeypatch.setattr(dh, 'read_table', lambda name: ({**row, 'row': '1'}, {**row, 'row': '2'}))
+    monkeypatch.setattr(dh, 'read_table', tables(ROW, {**ROW, 'row': '2'}))
     with pytest.raises(ChainError, match='twice'):
         load_chain('3d_40dof', {})
