@@ -16,6 +16,7 @@ from human_model.exceptions import LiftingError
 from lifting_cli import (
     compare_command,
     emg_command,
+    import_command,
     model_command,
     opensim_command,
     planning_command,
@@ -38,7 +39,8 @@ STOPPED = 130
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; return the exit code."""
-    options = _parser().parse_args(arguments)
+    words = sys.argv[1:] if arguments is None else arguments
+    options = _parser().parse_args(import_command.with_axes(words))
     handler: Callable[[argparse.Namespace], int] = options.handler
     try:
         return handler(options)
@@ -115,15 +117,6 @@ def _parser() -> argparse.ArgumentParser:
     record.add_argument('--duration', type=float, help='end after so many seconds')
     record.set_defaults(handler=_record)
 
-    convert = commands.add_parser('import', help='turn C3D or TRC + MOT/STO into a recording')
-    convert.add_argument('markers', type=Path, help='.c3d or .trc')
-    convert.add_argument('--forces', type=Path, help='.mot or .sto that belongs to a .trc')
-    convert.add_argument('--subject', type=Path, required=True, help='subject file (YAML)')
-    convert.add_argument('--static', type=Path, help='static trial for the calibration')
-    convert.add_argument('--output', type=Path, required=True, help='recording to create')
-    _add_conventions(convert)
-    convert.set_defaults(handler=_import)
-
     report = commands.add_parser('report', help='write the report of a results file')
     report.add_argument('results', type=Path, help='results.mcap of a run')
     report.add_argument('--output', type=Path, help='HTML file (default: beside the results)')
@@ -132,6 +125,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     report.set_defaults(handler=_report)
 
+    import_command.add_to(commands)
     model_command.add_to(commands)
     compare_command.add_to(commands)
     opensim_command.add_to(commands)
@@ -250,51 +244,6 @@ def _record(options: argparse.Namespace) -> int:
     )
     for topic, count in sorted(report.messages.items()):
         print(f'{count:8d}  {topic}')
-    return 0
-
-
-def _add_conventions(parser: argparse.ArgumentParser) -> None:
-    group = parser.add_argument_group('conventions', 'what the recording itself does not settle')
-    group.add_argument('--units', choices=('m', 'cm', 'mm'))
-    group.add_argument('--vertical', metavar='AXIS', help='for example +y')
-    group.add_argument('--facing', metavar='AXIS', help='for example +x')
-    group.add_argument('--floor-height', type=float, default=0.0, help='[m]')
-    group.add_argument(
-        '--mass-tolerance',
-        type=float,
-        default=0.05,
-        help='accepted deviation of the weight on the plates from the mass (default: 0.05)',
-    )
-    group.add_argument(
-        '--plate', action='append', default=[], metavar='NAME=SIDE', help='for example 1=right'
-    )
-
-
-def _import(options: argparse.Namespace) -> int:
-    from lifting_recordings.alignment import ConventionOptions
-    from lifting_recordings.importer import ImportOptions, import_recording
-
-    report = import_recording(
-        ImportOptions(
-            options.markers,
-            options.subject,
-            options.output,
-            forces=options.forces,
-            static=options.static,
-            conventions=ConventionOptions(
-                units=options.units,
-                vertical=options.vertical,
-                facing=options.facing,
-                floor_height=options.floor_height,
-                mass_tolerance=options.mass_tolerance,
-                plates=dict(entry.split('=', 1) for entry in options.plate),
-            ),
-        )
-    )
-    for statement in report.statements:
-        print(statement)
-    total = sum(report.messages.values())
-    print(f'{report.bag}: {total} messages, {report.duration:.2f} s')
     return 0
 
 

@@ -9,18 +9,26 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from human_model.constants import GRAVITY, SIDES
+from human_model.constants import SIDES
 from human_model.typing import Array
 from lifting_recordings import conventions
+from lifting_recordings.body_weight import check_weight
 from lifting_recordings.exceptions import ConventionError
 from lifting_recordings.marker_roles import MarkerRoles
-from lifting_recordings.plate_assignment import assign_plates, orient_plates
+from lifting_recordings.plate_assignment import (
+    LOADS,
+    Carried,
+    assign_plates,
+    by_name,
+    orient_plates,
+    select_plates,
+)
 from lifting_recordings.recording import Plate, RawRecording, Recording
 
 # Body weight on the plates against the entered mass, as a share.
 MASS_TOLERANCE = 0.05
-_QUIET_SECONDS = 1.0
-_QUIET_SPREAD = 0.02
+# A surface of a plate that is further from the floor is said [m].
+_FLUSH = 0.02
 
 
 @dataclass(frozen=True)
@@ -36,7 +44,8 @@ class ConventionOptions:
     floor_height : float
         Height of the floor in the file's axes [m].
     plates : Mapping of str to str
-        Plate name to 'right' or 'left'.
+        Plate name, or its last part ('1' of 'ground_force_1'), to 'right', 'left', 'both', 'box'
+        or 'none'.
     mass_tolerance : float
         Allowed share between plate weight and entered mass.
     """
@@ -58,15 +67,17 @@ class ConventionOptions:
                 )
         if self.units is not None and self.units not in conventions.UNIT_METRES:
             raise ConventionError(f'option units: {self.units!r} is not m, cm or mm')
-        for name, side in self.plates.items():
-            if side not in SIDES:
-                raise ConventionError(f'option plates: {name}: {side!r} is not right or left')
+        for name, load in self.plates.items():
+            if load not in LOADS:
+                raise ConventionError(
+                    f'--plate {name}={load}: {load!r} is not one of {", ".join(LOADS)}'
+                )
 
 
 def align(
     raw: RawRecording,
     stature: float,
-    mass: float,
+    carried: Carried,
     options: ConventionOptions,
     extra_roles: Mapping[str, str] | None = None,
 ) -> Recording:
@@ -76,8 +87,10 @@ def align(
     ----------
     raw : RawRecording
         As read.
-    stature, mass : float
-        Of the subject [m], [kg].
+    stature : float
+        Of the subject [m].
+    carried : Carried
+        Masses of person and box, and the markers of the box.
     options : ConventionOptions
         Settles what is ambiguous.
     extra_roles : Mapping of str to str, optional
@@ -89,11 +102,14 @@ def align(
         Anything ambiguous or contradictory.
     """
     said: list[str] = list(raw.notes)
+    wishes = by_name(raw.plates, options.plates)
+    loaded, texts = select_plates(raw.plates, wishes)
+    said += texts
     roles = MarkerRoles(raw.names, extra_roles)
     scale, text = conventions.metres_per_unit(raw.positions, raw.units, stature, options.units)
     said.append(text)
     positions = raw.positions * scale
-    up, text = conventions.vertical_axis(positions, raw.plates, roles, options.vertical)
+    up, text = conventions.vertical_axis(positions, loaded, roles, options.vertical)
     said.append(text)
     facing, text = conventions.facing_axis(positions, conventions.AXES[up], roles, options.facing)
     said.append(text)
@@ -103,16 +119,29 @@ def align(
     said.append(conventions.check_sides(markers, roles))
     said.append(conventions.check_floor(markers, roles, options.floor_height))
     plates: dict[str, Plate] = {}
-    if raw.plates:
-        turned = tuple(_turn(plate, turn, origin) for plate in raw.plates)
+    if loaded:
+        turned = tuple(_turn(plate, turn, origin) for plate in loaded)
+        said += [text for plate in turned for text in _raised(plate)]
         upward, text = orient_plates(turned)
         said.append(text)
-        feet, texts = assign_plates(upward, raw.time, markers, roles, dict(options.plates))
+        feet, texts = assign_plates(upward, raw.time, markers, roles, wishes, carried)
         said += texts
-        plates = {side: _sum(side, feet[side]) for side in SIDES}
-        said.append(_check_weight(plates, mass, options.mass_tolerance))
+        plates = {side: _sum(side, feet[side]) for side in SIDES if feet[side]}
+    if plates:
+        height = roles.mean(markers, 'pelvis_front')
+        said.append(
+            check_weight(
+                plates,
+                carried,
+                options.mass_tolerance,
+                raw.time,
+                None if height is None else height[:, 2],
+            )
+        )
     else:
-        said.append('No force plates in the recording.')
+        said.append(
+            f'No {"loaded plate under a foot" if raw.plates else "force plates"} in the recording.'
+        )
     return Recording(
         path=raw.path,
         names=raw.names,
@@ -127,7 +156,20 @@ def align(
 def _turn(plate: Plate, turn: Array, origin: Array) -> Plate:
     force = plate.force @ turn.T
     moment = plate.moment @ turn.T - np.cross(origin, force)
-    return Plate(plate.name, plate.time, force, moment)
+    corners = None if plate.corners is None else plate.corners @ turn.T - origin
+    return Plate(plate.name, plate.time, force, moment, corners=corners)
+
+
+def _raised(plate: Plate) -> list[str]:
+    """Return a warning about a plate whose surface is not at the height of the floor."""
+    height = 0.0 if plate.corners is None else float(plate.corners[:, 2].mean())
+    if abs(height) <= _FLUSH:
+        return []
+    return [
+        f'Warning: the surface of plate {plate.name} is {1e3 * height:+.0f} mm from the floor: '
+        'give --floor-height if the floor is there, else the parameter plate_surface_height of '
+        'the tracker.'
+    ]
 
 
 def _sum(side: str, plates: list[Plate]) -> Plate:
@@ -143,27 +185,3 @@ def _sum(side: str, plates: list[Plate]) -> Plate:
         np.sum([p.force for p in plates], axis=0),
         np.sum([p.moment for p in plates], axis=0),
     )
-
-
-def _check_weight(plates: dict[str, Plate], mass: float, tolerance: float) -> str:
-    """Compare the weight in the first quiet second with the entered mass."""
-    right, left = plates['right'], plates['left']
-    total = right.force[:, 2] + np.interp(right.time, left.time, left.force[:, 2])
-    step = float(np.median(np.diff(right.time)))
-    window = max(2, round(_QUIET_SECONDS / step))
-    weight, where = float(np.mean(total)), 'mean of the whole recording'
-    for start in range(0, total.size - window + 1, max(1, window // 10)):
-        part = total[start : start + window]
-        if np.std(part) < _QUIET_SPREAD * np.mean(part):
-            weight = float(np.mean(part))
-            where = f'quiet standing at {right.time[start]:.2f} s'
-            break
-    weighed = weight / GRAVITY
-    off = weighed / mass - 1.0
-    if abs(off) > tolerance:
-        raise ConventionError(
-            f'body mass: the plates say {weighed:.1f} kg ({where}), the subject file '
-            f'subject.mass says {mass:g} kg, {off * 100:+.1f} %: allowed are '
-            f'{tolerance * 100:g} % (option mass_tolerance)'
-        )
-    return f'Body mass on the plates: {weighed:.1f} kg ({where}), {off * 100:+.1f} % of entered.'

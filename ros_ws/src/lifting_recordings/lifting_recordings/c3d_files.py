@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""C3D files through ezc3d: points, force plates (types 2 and 4 corrected by ezc3d), EMG."""
+"""C3D files through ezc3d: points, force plates (see `c3d_plates`), EMG."""
 
 from __future__ import annotations
 
@@ -11,29 +11,19 @@ from typing import Any
 import ezc3d
 import numpy as np
 
+from lifting_recordings.c3d_plates import read_plates
 from lifting_recordings.exceptions import FileFormatError
-from lifting_recordings.recording import Analog, Plate, RawRecording
+from lifting_recordings.raw_markers import select_labels
+from lifting_recordings.recording import Analog, RawRecording
 
 _MAGIC_BYTE = 0x50
 _BLOCK = 512
 # Processor byte of the parameter section: byte order, and where POINT:SCALE has its sign bit.
 _PROCESSORS = {84: ('<', 15), 85: ('<', 13), 86: ('>', 12)}
-# Plate types whose calibration ezc3d applies; 3 gives the eight Kistler channels, also handled.
-_PLATE_TYPES = (2, 3, 4)
-_FORCE_UNITS = {'N': 1.0, 'kN': 1e3}
-_LENGTH_UNITS = {'m': 1.0, 'cm': 1e-2, 'mm': 1e-3}
 
 
 def _text(value: Any) -> str:
     return str(value).strip()
-
-
-def _moment_scale(path: Path, unit: str) -> float:
-    for force, f_scale in _FORCE_UNITS.items():
-        for length, l_scale in _LENGTH_UNITS.items():
-            if unit.replace('*', '').replace('.', '') == force + length:
-                return f_scale * l_scale
-    raise FileFormatError(path, f'unknown moment unit {unit!r}', field='FORCE_PLATFORM')
 
 
 def _parameter(c3d: Any, path: Path, group: str, name: str) -> Any:
@@ -43,7 +33,9 @@ def _parameter(c3d: Any, path: Path, group: str, name: str) -> Any:
     return parameters[group][name]['value']
 
 
-def read_c3d(path: str | Path, emg: tuple[str, ...] | None = None) -> RawRecording:
+def read_c3d(
+    path: str | Path, emg: tuple[str, ...] | None = None, prefix: str | None = None
+) -> RawRecording:
     """Read a C3D file.
 
     Parameters
@@ -52,6 +44,8 @@ def read_c3d(path: str | Path, emg: tuple[str, ...] | None = None) -> RawRecordi
         The file.
     emg : tuple of str, optional
         Analog channels to keep; without it all that do not belong to a plate.
+    prefix : str, optional
+        Prefix of the labels of the subject, where the file holds several.
 
     Returns
     -------
@@ -61,48 +55,38 @@ def read_c3d(path: str | Path, emg: tuple[str, ...] | None = None) -> RawRecordi
     Raises
     ------
     FileFormatError
-        Not a C3D file, no points, an unsupported plate type or unit, or an unknown channel.
+        Not a C3D file, no labelled points, an unknown unit or channel.
     """
     path = Path(path)
     head = path.read_bytes()[:2]
     if len(head) < 2 or head[1] != _MAGIC_BYTE:
         raise FileFormatError(path, 'is not a C3D file (second byte is not 0x50)')
     try:
-        c3d = ezc3d.c3d(str(path), extract_forceplat_data=True)
+        c3d = ezc3d.c3d(str(path))
     except Exception as error:  # ezc3d raises bare C++ exceptions of several kinds
         raise FileFormatError(path, f'ezc3d cannot read it: {error}') from error
     points = np.asarray(c3d['data']['points'], dtype=np.float64)
     if points.shape[1] == 0 or points.shape[2] == 0:
         raise FileFormatError(path, 'holds no points', field='POINT:USED')
-    labels = _point_labels(path, c3d, points.shape[1])
-    # Trajectories that nobody has labelled: no name, or a star and a number.
-    named = [i for i, label in enumerate(labels) if label and not label.startswith('*')]
-    names = tuple(labels[i].rsplit(':', 1)[-1] for i in named)
-    if len(set(names)) < len(names):
-        twice = next(n for n in names if names.count(n) > 1)
-        raise FileFormatError(path, f'{twice!r} appears twice', field='POINT:LABELS')
+    labels = select_labels(
+        path, _point_labels(path, c3d, points.shape[1]), prefix, field='POINT:LABELS'
+    )
     _check_size(path, points.shape[2])
     rate = float(c3d['header']['points']['frame_rate'])
     if not rate > 0.0:
         raise FileFormatError(path, f'is {rate}', field='POINT:RATE')
     time = np.arange(points.shape[2]) / rate
-    notes = []
-    if any(':' in label for label in labels):
-        notes.append(f'{path.name}: subject prefixes of the labels left out.')
-    if len(named) < len(labels):
-        notes.append(f'{path.name}: {len(labels) - len(named)} unlabelled points left out.')
-    plates, used = _plates(path, c3d, time)
-    if plates:
-        notes.append(f'{path.name}: {len(plates)} force plates, corrected by ezc3d.')
+    plates, used = read_plates(path, c3d)
+    units = c3d['parameters']['POINT'].get('UNITS', {'value': []})['value']
     return RawRecording(
         path=path,
-        names=names,
+        names=labels.names,
         time=time,
-        positions=np.ascontiguousarray(points[:3, named].transpose(2, 1, 0)),
-        units=_text(_parameter(c3d, path, 'POINT', 'UNITS')[0]),
+        positions=np.ascontiguousarray(points[:3, labels.columns].transpose(2, 1, 0)),
+        units=_text(units[0]) if len(units) else '',
         plates=plates,
         analog=_analog(path, c3d, used, emg),
-        notes=tuple(notes),
+        notes=labels.notes,
     )
 
 
@@ -147,47 +131,6 @@ def _check_size(path: Path, frames: int) -> None:
 
 def _analog_time(c3d: Any, n: int) -> Any:
     return np.arange(n) / float(c3d['header']['analogs']['frame_rate'])
-
-
-def _plates(path: Path, c3d: Any, time: Any) -> tuple[tuple[Plate, ...], set[int]]:
-    parameters = c3d['parameters']
-    platforms = c3d['data'].get('platform', [])
-    if not platforms:
-        return (), set()
-    types = [int(t) for t in _parameter(c3d, path, 'FORCE_PLATFORM', 'TYPE')[: len(platforms)]]
-    for i, kind in enumerate(types):
-        if kind not in _PLATE_TYPES:
-            raise FileFormatError(
-                path, f'plate {i + 1} is of type {kind}', field='FORCE_PLATFORM:TYPE'
-            )
-    channel = np.asarray(parameters['FORCE_PLATFORM']['CHANNEL']['value'], dtype=int)
-    plates = []
-    for i, platform in enumerate(platforms):
-        force_unit, moment_unit, length_unit = (
-            _text(platform[key]) for key in ('unit_force', 'unit_moment', 'unit_position')
-        )
-        for unit, known in ((force_unit, _FORCE_UNITS), (length_unit, _LENGTH_UNITS)):
-            if unit not in known:
-                raise FileFormatError(
-                    path, f'plate {i + 1}: unknown unit {unit!r}', field='FORCE_PLATFORM'
-                )
-        force = np.asarray(platform['force'], dtype=np.float64).T * _FORCE_UNITS[force_unit]
-        moment = np.asarray(platform['moment'], dtype=np.float64).T
-        moment = moment * _moment_scale(path, moment_unit)
-        # ezc3d gives the moment about the middle of the plate's surface.
-        corners = np.asarray(platform['corners'], dtype=np.float64).reshape(3, -1)
-        centre = corners.mean(axis=1) * _LENGTH_UNITS[length_unit]
-        if not (np.all(np.isfinite(force)) and np.all(np.isfinite(moment))):
-            raise FileFormatError(path, f'plate {i + 1} holds NaN', field='FORCE_PLATFORM')
-        plates.append(
-            Plate(
-                f'plate_{i + 1}',
-                _analog_time(c3d, len(force)),
-                force,
-                moment + np.cross(centre, force),
-            )
-        )
-    return tuple(plates), {int(c) - 1 for c in channel.ravel()}
 
 
 def _analog(path: Path, c3d: Any, used: set[int], wanted: tuple[str, ...] | None) -> Analog | None:

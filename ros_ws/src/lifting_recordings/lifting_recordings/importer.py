@@ -25,6 +25,8 @@ from lifting_recordings.c3d_files import read_c3d
 from lifting_recordings.exceptions import BagError, FileFormatError, SubjectFileError
 from lifting_recordings.messages import MarkerCalibration, subject_message, task_message
 from lifting_recordings.opensim_forces import read_trc_and_forces
+from lifting_recordings.plate_assignment import Carried
+from lifting_recordings.raw_markers import without_zeros
 from lifting_recordings.recording import Analog, Plate, RawRecording, Recording
 from lifting_recordings.static_trial import calibrate_markers
 from lifting_recordings.subject_file import (
@@ -59,6 +61,8 @@ class ImportOptions:
         Stamp of time zero of the file [ns].
     compress : bool
         zstd inside the MCAP file.
+    label_prefix : str or None
+        Prefix of the labels of the subject, where the file holds several subjects or objects.
     """
 
     markers: Path
@@ -69,6 +73,7 @@ class ImportOptions:
     conventions: ConventionOptions = field(default_factory=ConventionOptions)
     start_time_ns: int = START_TIME_NS
     compress: bool = True
+    label_prefix: str | None = None
 
 
 @dataclass(frozen=True)
@@ -94,9 +99,12 @@ class ImportReport:
 
 
 def read_raw(
-    markers: Path, forces: Path | None, emg: tuple[str, ...] | None = None
+    markers: Path,
+    forces: Path | None,
+    emg: tuple[str, ...] | None = None,
+    prefix: str | None = None,
 ) -> RawRecording:
-    """Read a C3D file, or a TRC file with its forces.
+    """Read a C3D file, or a TRC file with its forces; a marker at 0, 0, 0 is not seen.
 
     Raises
     ------
@@ -110,10 +118,13 @@ def read_raw(
     if kind == '.c3d':
         if forces is not None:
             raise FileFormatError(forces, 'a C3D file brings its own forces; leave this one out')
-        return read_c3d(markers, emg)
-    if kind == '.trc':
-        return read_trc_and_forces(markers, forces)
-    raise FileFormatError(markers, f'marker files are .c3d or .trc, not {kind!r}')
+        raw = read_c3d(markers, emg, prefix)
+    elif kind == '.trc':
+        raw = read_trc_and_forces(markers, forces, prefix)
+    else:
+        raise FileFormatError(markers, f'marker files are .c3d or .trc, not {kind!r}')
+    positions, notes = without_zeros(markers, raw.names, raw.positions)
+    return replace(raw, positions=positions, notes=(*raw.notes, *notes))
 
 
 def rename_markers(raw: RawRecording, entry: SubjectFile) -> RawRecording:
@@ -141,21 +152,22 @@ def import_recording(options: ImportOptions) -> ImportReport:
     entry = read_subject_file(options.subject)
     if options.output.exists():
         raise BagError(f'{options.output} exists already; it is not overwritten')
-    raw = rename_markers(read_raw(options.markers, options.forces, entry.recording.emg), entry)
+    raw = read_raw(options.markers, options.forces, entry.recording.emg, options.label_prefix)
+    raw = rename_markers(raw, entry)
     subject = entry.subject
-    recording = align(
-        raw, subject.stature, subject.mass, options.conventions, entry.recording.roles
-    )
+    carried = Carried(subject.mass, entry.task.box_mass, tuple(entry.recording.box_markers))
+    recording = align(raw, subject.stature, carried, options.conventions, entry.recording.roles)
     calibration: MarkerCalibration | None = None
     said: tuple[str, ...] = ()
     if options.static is not None:
-        still = rename_markers(read_raw(options.static, None, ()), entry)
+        still = read_raw(options.static, None, (), options.label_prefix)
+        still = rename_markers(still, entry)
         # The conventions of the static trial are detected anew: it may be another file kind.
         trial = align(
             replace(still, plates=()),
             subject.stature,
-            subject.mass,
-            options.conventions,
+            carried,
+            replace(options.conventions, plates={}),
             entry.recording.roles,
         )
         calibration, said = calibrate_markers(trial, entry)

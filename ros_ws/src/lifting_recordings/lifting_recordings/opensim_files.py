@@ -1,15 +1,17 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Strict readers of OpenSim's TRC, MOT and STO files, and a writer of TRC.
+"""Readers of OpenSim's TRC, MOT and STO files, and a writer of TRC.
 
 Format as described in OpenSim's user guide, "Marker (.trc) Files"; MOT and STO are read by
 `muscle_analyzer.core.opensim_bridge.storage`.
-Nothing is repaired: a wrong count, an unsorted stamp or a word where a number belongs is an
-error that names file, line and field.
+A TRC file is read as OpenSim reads it; what is untidy and harmless is noted. An unsorted stamp, a
+missing cell or a word where a number belongs is an error that names file, line and field.
 """
 
 from __future__ import annotations
 
+import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,12 +19,16 @@ import numpy as np
 
 from human_model.typing import Array
 from lifting_recordings.exceptions import FileFormatError
+from lifting_recordings.raw_markers import select_labels
 from muscle_analyzer.core.exceptions import StorageError
 from muscle_analyzer.core.opensim_bridge import storage
 from muscle_analyzer.core.opensim_bridge.storage import Storage
 
-_TRC_KEYS = ('DataRate', 'NumFrames', 'NumMarkers', 'Units')
 _TRC_LEADING_COLUMNS = 2
+#: Line of the labels, after file type, keys and entries; the line of the axes follows.
+_TRC_LABELS = 4
+# Words that programs write for "not a number" or "infinite".
+_NOT_A_NUMBER = re.compile(r'[-+]?(nan|inf(inity)?|1\.#[A-Z]+)(\(.*\))?0*', re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -41,6 +47,8 @@ class MarkerTable:
         As stated in the file, e.g. 'mm'.
     rate : float
         Frames per second, as stated in the file.
+    notes : tuple of str
+        What the reader found worth saying.
     """
 
     names: tuple[str, ...]
@@ -48,25 +56,21 @@ class MarkerTable:
     positions: Array
     units: str
     rate: float
+    notes: tuple[str, ...] = ()
 
 
-def _lines(path: Path) -> list[str]:
+def _text(path: Path) -> str:
+    """Return the text of a file in UTF-8, or else in Latin-1, as older programs write it."""
+    data = path.read_bytes()
+    if b'\0' in data:
+        raise FileFormatError(path, 'is not a text file (it holds a zero byte)')
     try:
-        text = path.read_bytes().decode('utf-8-sig')
-    except UnicodeDecodeError as error:
-        raise FileFormatError(path, f'is not a text file ({error.reason})') from error
+        text = data.decode('utf-8-sig')
+    except UnicodeDecodeError:
+        text = data.decode('latin-1')
     if not text.strip():
         raise FileFormatError(path, 'is empty')
-    return text.splitlines()
-
-
-def _integer(path: Path, line: int, field: str, text: str) -> int:
-    try:
-        return int(text)
-    except ValueError as error:
-        raise FileFormatError(
-            path, f'expected a whole number, found {text!r}', line=line, field=field
-        ) from error
+    return text
 
 
 def _number(path: Path, line: int, field: str, text: str) -> float:
@@ -78,16 +82,16 @@ def _number(path: Path, line: int, field: str, text: str) -> float:
         ) from error
 
 
-def _unique(path: Path, line: int, names: tuple[str, ...]) -> None:
-    seen: set[str] = set()
-    for name in names:
-        if name in seen:
-            raise FileFormatError(path, 'appears twice', line=line, field=name)
-        seen.add(name)
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
 
 
-def check_stamps(path: Path, time: Array, first_line: int) -> None:
-    """Refuse NaN, unsorted or duplicated stamps.
+def check_stamps(path: Path, time: Array, lines: Sequence[int]) -> None:
+    """Refuse NaN, unsorted or duplicated stamps, which stand in these lines of the file.
 
     Raises
     ------
@@ -97,7 +101,7 @@ def check_stamps(path: Path, time: Array, first_line: int) -> None:
     bad = np.flatnonzero(~np.isfinite(time))
     if bad.size:
         raise FileFormatError(
-            path, f'stamp is {time[bad[0]]}', line=first_line + int(bad[0]), field='time'
+            path, f'stamp is {time[bad[0]]}', line=lines[int(bad[0])], field='time'
         )
     back = np.flatnonzero(np.diff(time) <= 0.0)
     if back.size:
@@ -106,80 +110,123 @@ def check_stamps(path: Path, time: Array, first_line: int) -> None:
         raise FileFormatError(
             path,
             f'{kind} stamp {time[i]:g} s after {time[i - 1]:g} s',
-            line=first_line + i,
+            line=lines[i],
             field='time',
         )
 
 
-def read_trc(path: str | Path) -> MarkerTable:
-    """Read a TRC file.
+def read_trc(path: str | Path, prefix: str | None = None) -> MarkerTable:
+    """Read a TRC file as OpenSim does: the number of frames is that of the rows.
 
     Parameters
     ----------
     path : str or Path
-        The file; blank cells are missing markers (NaN).
+        The file; a marker with a blank cell is not seen (NaN). Cells that were cut off with the
+        blanks at the end of a line are blank.
+    prefix : str, optional
+        Prefix of the labels of the subject, where the file holds several.
 
     Raises
     ------
     FileFormatError
-        Foreign, truncated or inconsistent file.
+        Foreign, cut off or inconsistent file.
     """
     path = Path(path)
-    lines = _lines(path)
-    if not lines[0].startswith('PathFileType') or len(lines) < 5:
+    text = _text(path)
+    lines = text.splitlines()
+    if not lines[0].lstrip().startswith('PathFileType') or len(lines) < _TRC_LABELS:
         raise FileFormatError(path, 'is not a TRC file (no PathFileType header)', line=1)
-    keys, entries = lines[1].split(), lines[2].split()
-    header = dict(zip(keys, entries, strict=False))
-    for key in _TRC_KEYS:
-        if key not in header:
-            raise FileFormatError(path, 'is missing from the header', line=2, field=key)
-    labels = lines[3].rstrip('\t\r\n ').split('\t')
-    names = tuple(label.strip() for label in labels[_TRC_LEADING_COLUMNS:] if label.strip())
-    _unique(path, 4, names)
-    n_markers = _integer(path, 3, 'NumMarkers', header['NumMarkers'])
-    if len(names) != n_markers:
-        raise FileFormatError(
-            path, f'header says {n_markers}, line 4 names {len(names)}', line=3, field='NumMarkers'
-        )
-    first = 5
-    while first < len(lines) and not lines[first].strip():
+    header = _trc_header(path, lines)
+    first = _TRC_LABELS
+    while first < len(lines) and lines[first].strip()[:1] in ('', 'X', 'x'):
         first += 1
-    rows = [line for line in lines[first:] if line.strip()]
-    n_frames = _integer(path, 3, 'NumFrames', header['NumFrames'])
-    if len(rows) != n_frames:
+    rows = [(i, lines[i].split('\t')) for i in range(first, len(lines)) if lines[i].strip()]
+    if not rows:
+        raise FileFormatError(path, 'holds no frame', line=len(lines), field='Frame#')
+    wide = max(_filled(cells) for _, cells in rows) - _TRC_LEADING_COLUMNS
+    labels = _trc_labels(lines[_TRC_LABELS - 1], -(-wide // 3))
+    complete = _TRC_LEADING_COLUMNS + 3 * len(labels)
+    if not text.endswith(('\n', '\r')) and len(rows[-1][1]) < complete:
         raise FileFormatError(
             path,
-            f'header says {n_frames} frames, the file holds {len(rows)} (truncated?)',
-            line=3,
-            field='NumFrames',
+            f'{len(rows[-1][1])} cells where {complete} belong: the file is cut off',
+            line=rows[-1][0] + 1,
         )
-    data = np.full((n_frames, 3 * n_markers + 1), np.nan)
-    for i, row in enumerate(rows):
-        cells = row.rstrip('\r\n').split('\t')
-        extra = cells[_TRC_LEADING_COLUMNS + 3 * n_markers :]
-        if len(cells) < _TRC_LEADING_COLUMNS + 3 * n_markers or any(c.strip() for c in extra):
-            raise FileFormatError(
-                path,
-                f'{len(cells)} cells where {_TRC_LEADING_COLUMNS + 3 * n_markers} belong',
-                line=first + 1 + i,
-            )
-        _fill_trc_row(path, first + 1 + i, cells, names, data[i])
-    check_stamps(path, data[:, 0], first + 1)
+    data = np.full((len(rows), 3 * len(labels) + 1), np.nan)
+    for (i, cells), row in zip(rows, data, strict=True):
+        _fill_trc_row(path, i + 1, cells, labels, row)
+    check_stamps(path, data[:, 0], [i + 1 for i, _ in rows])
+    chosen = select_labels(path, labels, prefix, field='labels', line=_TRC_LABELS)
+    positions = data[:, 1:].reshape(len(rows), -1, 3)[:, chosen.columns]
     return MarkerTable(
-        names=names,
+        names=chosen.names,
         time=data[:, 0].copy(),
-        positions=data[:, 1:].reshape(n_frames, n_markers, 3).copy(),
-        units=header['Units'],
-        rate=_number(path, 3, 'DataRate', header['DataRate']),
+        positions=positions,
+        units=header.get('Units', ''),
+        rate=_trc_rate(header, data[:, 0]),
+        notes=(*_trc_counts(path, header, len(rows), len(labels)), *chosen.notes),
     )
 
 
-def _fill_trc_row(
-    path: Path, line: int, cells: list[str], names: tuple[str, ...], row: Array
-) -> None:
-    for j in range(row.size):
-        text = cells[j + 1].strip()
-        if text:
+def _trc_header(path: Path, lines: list[str]) -> dict[str, str]:
+    """Return the entries of lines 2 and 3 by key; blank cells between tabs are kept."""
+    keys, entries = ([cell.strip() for cell in lines[i].split('\t')] for i in (1, 2))
+    if len(keys) < len(lines[1].split()):
+        keys, entries = lines[1].split(), lines[2].split()
+    elif '' in keys:
+        keys, entries = ([cell for cell in cells if cell] for cells in (keys, entries))
+    if 'NumMarkers' not in keys:
+        raise FileFormatError(path, 'is missing from the header', line=2, field='NumMarkers')
+    return dict(zip(keys, entries, strict=False))
+
+
+def _trc_rate(header: dict[str, str], time: Array) -> float:
+    """Return the stated frames per second, or those of the stamps where it states no number."""
+    stated = header.get('DataRate', '')
+    if _is_number(stated) and float(stated) > 0.0:
+        return float(stated)
+    return 1.0 / float(np.median(np.diff(time))) if time.size > 1 else np.nan
+
+
+def _trc_labels(line: str, columns: int) -> list[str]:
+    """Return a label for each marker, of which the rows hold so many; '' where there is none.
+
+    Labels stand above the first of three columns, or one after the other.
+    """
+    cells = [cell.strip() for cell in line.rstrip().split('\t')][_TRC_LEADING_COLUMNS:]
+    aligned = all(not cell for i, cell in enumerate(cells) if i % 3)
+    labels = cells[::3] if aligned else [cell for cell in cells if cell]
+    return labels + [''] * (columns - len(labels))
+
+
+def _trc_counts(
+    path: Path, header: dict[str, str], n_frames: int, n_markers: int
+) -> tuple[str, ...]:
+    """Return notes of what the header counts otherwise."""
+    found = {'NumFrames': n_frames, 'NumMarkers': n_markers}
+    return tuple(
+        f'{path.name}: {key} in the header is {header[key]}, the file holds {count} '
+        '(trimmed or cut off?); what it holds is read.'
+        for key, count in found.items()
+        if key in header and header[key] != str(count)
+    )
+
+
+def _filled(cells: list[str]) -> int:
+    """Return the number of cells up to the last that is not blank."""
+    return max((i + 1 for i, cell in enumerate(cells) if cell.strip()), default=0)
+
+
+def _fill_trc_row(path: Path, line: int, cells: list[str], names: list[str], row: Array) -> None:
+    """Fill stamp and positions of a row; what is blank stays NaN."""
+    missing = _TRC_LEADING_COLUMNS + 3 * len(names) - len(cells)
+    if missing > 0 and missing % 3:
+        raise FileFormatError(
+            path, f'{len(cells)} cells where {len(cells) + missing} belong', line=line
+        )
+    for j, cell in enumerate(cells[1 : row.size + 1]):
+        text = cell.strip()
+        if text and not _NOT_A_NUMBER.fullmatch(text):
             field = 'Time' if j == 0 else f'{names[(j - 1) // 3]}.{"XYZ"[(j - 1) % 3]}'
             row[j] = _number(path, line, field, text)
 

@@ -77,17 +77,26 @@ def plates_from_storage(path: str | Path, table: Storage) -> tuple[Plate, ...]:
     return tuple(plates)
 
 
-def read_trc_and_forces(markers: str | Path, forces: str | Path | None) -> RawRecording:
+def read_trc_and_forces(
+    markers: str | Path, forces: str | Path | None, prefix: str | None = None
+) -> RawRecording:
     """Read a TRC file and the MOT or STO file that belongs to it.
+
+    Parameters
+    ----------
+    markers, forces : str or Path
+        The files.
+    prefix : str, optional
+        Prefix of the labels of the subject, where the file holds several.
 
     Raises
     ------
     FileFormatError
         Either file is damaged, or their time ranges do not overlap.
     """
-    table = read_trc(markers)
+    table = read_trc(markers, prefix)
     plates: tuple[Plate, ...] = ()
-    notes = []
+    notes = list(table.notes)
     if forces is not None:
         storage = read_storage(forces)
         plates = plates_from_storage(forces, storage)

@@ -26,12 +26,18 @@ class Plate:
         [N].
     moment : ndarray, shape (n, 3)
         [N m] about the origin of the axes `force` is given in.
+    corners : ndarray, shape (4, 3), or None
+        Of the surface [m], where the file states them.
+    problem : str
+        Why the plate cannot be used; it has no samples then.
     """
 
     name: str
     time: Array
     force: Array
     moment: Array
+    corners: Array | None = None
+    problem: str = ''
 
 
 @dataclass(frozen=True)

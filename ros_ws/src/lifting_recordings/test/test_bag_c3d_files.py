@@ -10,6 +10,7 @@ from lifting_recordings.alignment import ConventionOptions, align
 from lifting_recordings.c3d_files import read_c3d
 from lifting_recordings.exceptions import FileFormatError
 from lifting_recordings.importer import ImportOptions, import_recording
+from lifting_recordings.plate_assignment import Carried
 from lifting_recordings.reader import BagReader
 
 RATE, RATIO = 100.0, 10
@@ -80,7 +81,7 @@ def test_points_plates_and_emg(file, standing):
     assert raw.analog.names == ('EMG_BFR',)
     assert raw.analog.units == ('V',)
     assert raw.analog.values.shape == (RATIO * standing.raw.time.size, 1)
-    found = align(raw, standing.stature, standing.mass, ConventionOptions())
+    found = align(raw, standing.stature, Carried(standing.mass), ConventionOptions())
     for side, truth in zip(('right', 'left'), standing.raw.plates, strict=True):
         plate = found.plates[side]
         assert plate.time.size == RATIO * truth.time.size
@@ -106,6 +107,25 @@ def test_label_given_twice_is_named(file, tmp_path):
     c3d.write(str(tmp_path / 'b.c3d'))
     with pytest.raises(FileFormatError, match="'CLAV' appears twice"):
         read_c3d(tmp_path / 'b.c3d')
+
+
+def test_file_with_unlabelled_points_only_is_refused(file, tmp_path):
+    c3d = ezc3d.c3d(str(file))
+    labels = c3d['parameters']['POINT']['LABELS']['value']
+    labels[:] = [f'*{i}' for i in range(len(labels))]
+    c3d.write(str(tmp_path / 'b.c3d'))
+    with pytest.raises(FileFormatError, match=r'b\.c3d.*none of its 12 points has a label'):
+        read_c3d(tmp_path / 'b.c3d')
+
+
+def test_prefix_chooses_the_subject(file, standing, tmp_path):
+    c3d = ezc3d.c3d(str(file))
+    labels = c3d['parameters']['POINT']['LABELS']['value']
+    labels[-1] = 'Box:C7'
+    c3d.write(str(tmp_path / 'b.c3d'))
+    with pytest.raises(FileFormatError, match=r"'C7' appears twice.*--label-prefix, one of S1, B"):
+        read_c3d(tmp_path / 'b.c3d')
+    assert read_c3d(tmp_path / 'b.c3d', prefix='S1').names == (*standing.raw.names[:-1], 'Box:C7')
 
 
 def test_named_channels_only(file):

@@ -10,6 +10,7 @@ import pytest
 
 from lifting_recordings.alignment import ConventionOptions, align
 from lifting_recordings.exceptions import ConventionError
+from lifting_recordings.plate_assignment import Carried
 from lifting_recordings.recording import Plate, centre_of_pressure
 
 DEFAULT = ConventionOptions()
@@ -30,7 +31,7 @@ def right_handed_frames() -> list[np.ndarray]:
 @pytest.mark.parametrize(('units', 'scale'), [('m', 1.0), ('mm', 1000.0)])
 def test_every_axis_convention_comes_back_the_same(standing, matrix, units, scale):
     file = replace(standing.turned(standing.raw, matrix, scale), units=units)
-    found = align(file, standing.stature, standing.mass, DEFAULT)
+    found = align(file, standing.stature, Carried(standing.mass), DEFAULT)
     np.testing.assert_allclose(found.markers, standing.raw.positions, atol=1e-9)
     np.testing.assert_allclose(
         found.plates['right'].force, standing.raw.plates[0].force, atol=1e-9
@@ -41,14 +42,18 @@ def test_every_axis_convention_comes_back_the_same(standing, matrix, units, scal
 
 
 def test_everything_detected_is_stated(standing):
-    said = ' '.join(align(standing.raw, standing.stature, standing.mass, DEFAULT).statements)
+    said = ' '.join(
+        align(standing.raw, standing.stature, Carried(standing.mass), DEFAULT).statements
+    )
     for part in ('units: m', 'Vertical axis', 'Facing', 'Left and right', 'fp1: right', 'Floor'):
         assert part in said
 
 
 def test_force_on_the_plate_is_turned_round(standing):
     pressed = tuple(Plate(p.name, p.time, -p.force, -p.moment) for p in standing.raw.plates)
-    found = align(replace(standing.raw, plates=pressed), standing.stature, standing.mass, DEFAULT)
+    found = align(
+        replace(standing.raw, plates=pressed), standing.stature, Carried(standing.mass), DEFAULT
+    )
     np.testing.assert_allclose(found.plates['right'].force, standing.raw.plates[0].force)
     assert any('sign turned' in text for text in found.statements)
 
@@ -57,7 +62,7 @@ def test_swapped_plates_are_assigned_by_where_the_feet_are(standing):
     found = align(
         replace(standing.raw, plates=standing.raw.plates[::-1]),
         standing.stature,
-        standing.mass,
+        Carried(standing.mass),
         DEFAULT,
     )
     np.testing.assert_allclose(found.plates['right'].force, standing.raw.plates[0].force)
@@ -66,7 +71,7 @@ def test_swapped_plates_are_assigned_by_where_the_feet_are(standing):
 def test_swapped_plates_as_option_are_refused(standing):
     options = ConventionOptions(plates={'fp1': 'left', 'fp2': 'right'})
     with pytest.raises(ConventionError, match=r"'fp1': option says left.*says right"):
-        align(standing.raw, standing.stature, standing.mass, options)
+        align(standing.raw, standing.stature, Carried(standing.mass), options)
 
 
 def test_plate_option_takes_the_last_part_of_a_name(standing):
@@ -76,18 +81,25 @@ def test_plate_option_takes_the_last_part_of_a_name(standing):
     )
     raw = replace(standing.raw, plates=named)
     options = ConventionOptions(plates={'1': 'right', 'ground_force_2': 'left'})
-    found = align(raw, standing.stature, standing.mass, options)
+    found = align(raw, standing.stature, Carried(standing.mass), options)
     assert any('ground_force_1: right foot (option' in text for text in found.statements)
     with pytest.raises(ConventionError, match="option names '3'; the file has"):
-        align(raw, standing.stature, standing.mass, ConventionOptions(plates={'3': 'left'}))
+        align(
+            raw, standing.stature, Carried(standing.mass), ConventionOptions(plates={'3': 'left'})
+        )
 
 
 def test_plate_between_the_feet_needs_the_option(standing):
     plate = standing.raw.plates[0]
     moment = plate.moment + np.cross((0.0, 0.125, 0.0), plate.force)
     between = (Plate('fp1', plate.time, plate.force, moment), standing.raw.plates[1])
-    with pytest.raises(ConventionError, match=r"'fp1'.*option plates"):
-        align(replace(standing.raw, plates=between), standing.stature, standing.mass, DEFAULT)
+    with pytest.raises(ConventionError, match=r"'fp1'.*--plate fp1=SIDE"):
+        align(
+            replace(standing.raw, plates=between),
+            standing.stature,
+            Carried(standing.mass),
+            DEFAULT,
+        )
 
 
 def test_foot_without_plate_is_refused(standing):
@@ -95,7 +107,7 @@ def test_foot_without_plate_is_refused(standing):
         align(
             replace(standing.raw, plates=standing.raw.plates[:1]),
             standing.stature,
-            0.6 * standing.mass,
+            Carried(0.6 * standing.mass),
             DEFAULT,
         )
 
@@ -106,7 +118,7 @@ def test_two_plates_under_one_foot_are_added(standing):
     found = align(
         replace(standing.raw, plates=(*halves, standing.raw.plates[1])),
         standing.stature,
-        standing.mass,
+        Carried(standing.mass),
         DEFAULT,
     )
     np.testing.assert_allclose(found.plates['right'].moment, first.moment)
@@ -115,14 +127,14 @@ def test_two_plates_under_one_foot_are_added(standing):
 def test_millimetres_called_metres_are_refused_and_the_option_settles_it(standing):
     wrong = replace(standing.raw, positions=standing.raw.positions * 1000.0)
     with pytest.raises(ConventionError, match=r"stated 'm'.*fit 'mm'.*option units"):
-        align(wrong, standing.stature, standing.mass, DEFAULT)
-    found = align(wrong, standing.stature, standing.mass, ConventionOptions(units='mm'))
+        align(wrong, standing.stature, Carried(standing.mass), DEFAULT)
+    found = align(wrong, standing.stature, Carried(standing.mass), ConventionOptions(units='mm'))
     np.testing.assert_allclose(found.markers, standing.raw.positions, atol=1e-9)
 
 
 def test_unstated_units_are_not_guessed(standing):
     with pytest.raises(ConventionError, match='give the option units'):
-        align(replace(standing.raw, units=''), standing.stature, standing.mass, DEFAULT)
+        align(replace(standing.raw, units=''), standing.stature, Carried(standing.mass), DEFAULT)
 
 
 def test_swapped_labels_are_named(standing):
@@ -133,7 +145,7 @@ def test_swapped_labels_are_named(standing):
         align(
             replace(standing.raw, names=tuple(names), plates=()),
             standing.stature,
-            standing.mass,
+            Carried(standing.mass),
             DEFAULT,
         )
 
@@ -144,16 +156,25 @@ def test_facing_between_two_axes_needs_the_option(standing):
         standing.raw, np.array([[c, -c, 0.0], [c, c, 0.0], [0.0, 0.0, 1.0]])
     )
     with pytest.raises(ConventionError, match='option facing'):
-        align(diagonal, standing.stature, standing.mass, DEFAULT)
-    found = align(diagonal, standing.stature, standing.mass, ConventionOptions(facing='+x'))
+        align(diagonal, standing.stature, Carried(standing.mass), DEFAULT)
+    found = align(
+        diagonal, standing.stature, Carried(standing.mass), ConventionOptions(facing='+x')
+    )
     assert any('(option)' in text for text in found.statements)
 
 
 def test_option_against_the_data_is_refused(standing):
     with pytest.raises(ConventionError, match='option says -x'):
-        align(standing.raw, standing.stature, standing.mass, ConventionOptions(facing='-x'))
+        align(
+            standing.raw, standing.stature, Carried(standing.mass), ConventionOptions(facing='-x')
+        )
     with pytest.raises(ConventionError, match=r'option says \+y'):
-        align(standing.raw, standing.stature, standing.mass, ConventionOptions(vertical='+y'))
+        align(
+            standing.raw,
+            standing.stature,
+            Carried(standing.mass),
+            ConventionOptions(vertical='+y'),
+        )
 
 
 def test_markers_and_plates_in_different_axes_are_refused(standing):
@@ -161,20 +182,24 @@ def test_markers_and_plates_in_different_axes_are_refused(standing):
         Plate(p.name, p.time, p.force[:, [0, 2, 1]], p.moment) for p in standing.raw.plates
     )
     with pytest.raises(ConventionError, match='different axes'):
-        align(replace(standing.raw, plates=other), standing.stature, standing.mass, DEFAULT)
+        align(
+            replace(standing.raw, plates=other), standing.stature, Carried(standing.mass), DEFAULT
+        )
 
 
 def test_weight_off_by_more_than_five_percent_is_refused(standing):
     with pytest.raises(ConventionError, match=r'plates say 70\.0 kg.*subject\.mass says 75 kg'):
-        align(standing.raw, standing.stature, 75.0, DEFAULT)
-    align(standing.raw, standing.stature, 75.0, ConventionOptions(mass_tolerance=0.1))
+        align(standing.raw, standing.stature, Carried(75.0), DEFAULT)
+    align(standing.raw, standing.stature, Carried(75.0), ConventionOptions(mass_tolerance=0.1))
 
 
 def test_floor_not_at_zero_needs_the_option(standing):
     high = replace(standing.raw, positions=standing.raw.positions + (0.0, 0.0, 0.5), plates=())
     with pytest.raises(ConventionError, match='option floor_height'):
-        align(high, standing.stature, standing.mass, DEFAULT)
-    found = align(high, standing.stature, standing.mass, ConventionOptions(floor_height=0.5))
+        align(high, standing.stature, Carried(standing.mass), DEFAULT)
+    found = align(
+        high, standing.stature, Carried(standing.mass), ConventionOptions(floor_height=0.5)
+    )
     np.testing.assert_allclose(found.markers, standing.raw.positions, atol=1e-9)
 
 
@@ -185,7 +210,9 @@ def test_floor_height_moves_the_moments_too(standing):
         for p in standing.raw.plates
     )
     high = replace(standing.raw, positions=standing.raw.positions + lift, plates=plates)
-    found = align(high, standing.stature, standing.mass, ConventionOptions(floor_height=0.5))
+    found = align(
+        high, standing.stature, Carried(standing.mass), ConventionOptions(floor_height=0.5)
+    )
     np.testing.assert_allclose(
         found.plates['left'].moment, standing.raw.plates[1].moment, atol=1e-9
     )
@@ -195,7 +222,7 @@ def test_unknown_marker_names_need_roles(standing):
     names = tuple(f'M{i}' for i in range(len(standing.raw.names)))
     bare = replace(standing.raw, names=names)
     with pytest.raises(ConventionError, match=r'recording\.roles'):
-        align(bare, standing.stature, standing.mass, DEFAULT)
+        align(bare, standing.stature, Carried(standing.mass), DEFAULT)
     kinds = {'HEE': 'heel', 'TOE': 'toe', 'ASI': 'pelvis_front', 'SHO': 'trunk'}
     sides = {'R': 'right', 'L': 'left'}
     roles = {
@@ -203,7 +230,7 @@ def test_unknown_marker_names_need_roles(standing):
         for i, name in enumerate(standing.raw.names)
         if name[1:] in kinds
     }
-    found = align(bare, standing.stature, standing.mass, DEFAULT, roles)
+    found = align(bare, standing.stature, Carried(standing.mass), DEFAULT, roles)
     np.testing.assert_allclose(found.markers, standing.raw.positions, atol=1e-9)
 
 

@@ -68,16 +68,76 @@ def test_trc_unsorted_and_duplicated_stamps_name_the_line(tmp_path):
         read_trc(path)
 
 
-def test_trc_truncated_file_says_so(tmp_path):
+def test_trc_header_that_counts_otherwise_is_noted(tmp_path):
     path = tmp_path / 'a.trc'
     write_trc(path, table())
     text = path.read_text()
-    path.write_text('\n'.join(text.splitlines()[:-2]))
-    with pytest.raises(FileFormatError, match='says 5 frames, the file holds 3'):
-        read_trc(path)
-    path.write_text(text[:-30])
+    path.write_text('\n'.join(text.splitlines()[:-2]) + '\n')
+    back = read_trc(path)
+    np.testing.assert_allclose(back.positions, table().positions[:3], rtol=1e-8)
+    assert any('NumFrames in the header is 5, the file holds 3' in note for note in back.notes)
+    path.write_text(text.replace('\t5\t3\t', '\t\t7\t'))
+    back = read_trc(path)
+    assert back.positions.shape == (5, 3, 3)
+    assert any('NumMarkers in the header is 7, the file holds 3' in note for note in back.notes)
+
+
+def test_trc_cut_off_within_a_row_is_refused(tmp_path):
+    path = tmp_path / 'a.trc'
+    write_trc(path, table())
+    path.write_text(path.read_text()[:-30])
     with pytest.raises(FileFormatError, match=r'line 11: .* cells where 11 belong'):
         read_trc(path)
+
+
+def test_trc_blanks_cut_off_at_the_end_of_lines(tmp_path):
+    path = tmp_path / 'a.trc'
+    positions = table().positions
+    positions[1:4, 2] = np.nan
+    write_trc(path, MarkerTable(NAMES, table().time, positions, 'm', 100.0))
+    path.write_text('\n'.join(line.rstrip() for line in path.read_text().splitlines()) + '\n')
+    np.testing.assert_allclose(read_trc(path).positions, positions, rtol=1e-8)
+
+
+def test_trc_in_latin_1_and_with_words_for_nan(tmp_path):
+    path = tmp_path / 'a.trc'
+    write_trc(path, table())
+    damage(path, 7, '0.142857143', '-nan(ind)')
+    path.write_bytes(path.read_text().replace('a.trc', 'C:\\Übung\\a.trc').encode('latin-1'))
+    back = read_trc(path)
+    assert np.isnan(back.positions[0, 0, 1])
+    np.testing.assert_allclose(back.positions[1], table().positions[1], rtol=1e-8)
+
+
+def test_trc_columns_without_a_label_are_left_out(tmp_path):
+    path = tmp_path / 'a.trc'
+    write_trc(path, table())
+    damage(path, 4, 'R.Heel', '')
+    back = read_trc(path)
+    assert back.names == ('C7', 'L toe')
+    np.testing.assert_allclose(back.positions, table().positions[:, [0, 2]], rtol=1e-8)
+    assert any('1 unlabelled' in note for note in back.notes)
+
+
+def test_trc_labels_one_tab_apart(tmp_path):
+    path = tmp_path / 'a.trc'
+    write_trc(path, table())
+    damage(path, 4, 'C7\t\t\tR.Heel\t\t\tL toe\t\t', 'C7\tR.Heel\tL toe')
+    back = read_trc(path)
+    assert back.names == NAMES
+    np.testing.assert_allclose(back.positions, table().positions, rtol=1e-8)
+
+
+def test_trc_prefix_chooses_the_subject(tmp_path):
+    path = tmp_path / 'a.trc'
+    names = ('A:C7', 'B:C7', 'B:BOX')
+    write_trc(path, MarkerTable(names, table().time, table().positions, 'm', 100.0))
+    with pytest.raises(FileFormatError, match=r"'C7' appears twice .*--label-prefix, one of A, B"):
+        read_trc(path)
+    assert read_trc(path, 'A').names == ('C7', 'B:C7', 'BOX')
+    assert read_trc(path, 'B').names == ('A:C7', 'C7', 'BOX')
+    with pytest.raises(FileFormatError, match=r"no label has the prefix 'X'.*one of A, B"):
+        read_trc(path, 'X')
 
 
 @pytest.mark.parametrize('content', [b'', b'hello\nworld\n', b'\xff\xfe\x00PathFileType'])
@@ -94,7 +154,7 @@ def test_trc_marker_named_twice_is_refused(tmp_path):
     path = tmp_path / 'a.trc'
     write_trc(path, table())
     damage(path, 4, 'R.Heel', 'C7')
-    with pytest.raises(FileFormatError, match=r"line 4, field 'C7': appears twice"):
+    with pytest.raises(FileFormatError, match=r"line 4, field 'labels': 'C7' appears twice"):
         read_trc(path)
 
 
