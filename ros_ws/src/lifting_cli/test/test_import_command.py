@@ -25,7 +25,7 @@ def test_axis_is_joined_to_its_option_only():
 def test_unknown_axis_and_plate_are_refused_in_words(tmp_path, capsys):
     words = ['import', 'a.trc', '--subject', 's.yaml', '--output', str(tmp_path / 'bag')]
     assert main([*words, '--facing', 'x']) == 1
-    assert "facing: 'x' is not one of +x" in capsys.readouterr().err
+    assert "--facing x: 'x' is not one of +x" in capsys.readouterr().err
     assert main([*words, '--plate', 'right']) == 1
     assert '--plate right: write NAME=LOAD, for example 1=right' in capsys.readouterr().err
     assert main([*words, '--plate', '1=up']) == 1

@@ -63,10 +63,10 @@ class ConventionOptions:
             value = getattr(self, name)
             if value is not None and value not in conventions.AXES:
                 raise ConventionError(
-                    f'option {name}: {value!r} is not one of {", ".join(conventions.AXES)}'
+                    f'--{name} {value}: {value!r} is not one of {", ".join(conventions.AXES)}'
                 )
         if self.units is not None and self.units not in conventions.UNIT_METRES:
-            raise ConventionError(f'option units: {self.units!r} is not m, cm or mm')
+            raise ConventionError(f'--units {self.units}: {self.units!r} is not m, cm or mm')
         for name, load in self.plates.items():
             if load not in LOADS:
                 raise ConventionError(
@@ -81,7 +81,7 @@ def align(
     options: ConventionOptions,
     extra_roles: Mapping[str, str] | None = None,
 ) -> Recording:
-    """Detect the conventions of `raw`, state them and convert.
+    """Detect the conventions of a recording, state them and convert.
 
     Parameters
     ----------
@@ -99,8 +99,21 @@ def align(
     Raises
     ------
     ConventionError
-        Anything ambiguous or contradictory.
+        Anything ambiguous or contradictory; the message names the file.
     """
+    try:
+        return _aligned(raw, stature, carried, options, extra_roles)
+    except ConventionError as error:
+        raise ConventionError(f'{raw.path}: {error}') from error
+
+
+def _aligned(
+    raw: RawRecording,
+    stature: float,
+    carried: Carried,
+    options: ConventionOptions,
+    extra_roles: Mapping[str, str] | None,
+) -> Recording:
     said: list[str] = list(raw.notes)
     wishes = by_name(raw.plates, options.plates)
     loaded, texts = select_plates(raw.plates, wishes)
@@ -177,7 +190,8 @@ def _sum(side: str, plates: list[Plate]) -> Plate:
     for plate in plates[1:]:
         if plate.time.shape != first.time.shape or not np.allclose(plate.time, first.time):
             raise ConventionError(
-                f'plates {first.name!r} and {plate.name!r} under one foot have different stamps'
+                f'plates {first.name!r} and {plate.name!r} under one foot have different stamps: '
+                f'leave one out with --plate {plate.name}=none'
             )
     return Plate(
         side,

@@ -28,12 +28,22 @@ AXES = {
 _EXTENT = (0.3, 1.6)
 # An axis is named only if the direction is within 30 degrees of it.
 _AXIS_COSINE = np.cos(np.radians(30.0))
+# Left and right are exchanged if the left marker is so far to the right of the other [m]; feet of
+# a side stance cross by less.
+_CROSSED = 0.04
 # Heels and toes of a standing person lie within this height above the floor [m].
 _FLOOR_BAND = (-0.03, 0.20)
 
 
 def _mean(values: Array) -> Array:
-    return np.asarray(np.nanmean(values, axis=0))
+    """Return the mean (3,) over the frames in which all is seen."""
+    seen = np.isfinite(values).all(axis=1)
+    if not seen.any():
+        raise ConventionError(
+            'the markers of heels, toes, pelvis and trunk are never seen in one frame: name others'
+            ' in the subject file under recording.roles'
+        )
+    return np.asarray(values[seen].mean(axis=0))
 
 
 def _nearest_axis(direction: Array) -> tuple[str, float]:
@@ -63,22 +73,23 @@ def metres_per_unit(
     ConventionError
         Unknown unit, or a unit that makes the person too small or too tall.
     """
-    spans = np.nanmax(positions, axis=1) - np.nanmin(positions, axis=1)
-    extent = float(np.nanmedian(spans.max(axis=1)))
+    frames = positions[np.isfinite(positions).any(axis=(1, 2))]
+    spans = np.nanmax(frames, axis=1) - np.nanmin(frames, axis=1)
+    extent = float(np.median(spans.max(axis=1)))
     low, high = (factor * stature for factor in _EXTENT)
     fitting = [name for name, scale in UNIT_METRES.items() if low <= extent * scale <= high]
     stated = (option or units).strip().lower()
     if stated not in UNIT_METRES:
         hint = f'; the markers span {extent:g}, which fits {fitting}' if fitting else ''
         raise ConventionError(
-            f'marker units: the file states {units!r}{hint}: give the option units (m, cm or mm)'
+            f'marker units: the file states {units!r}{hint}: give --units m, cm or mm'
         )
     if stated not in fitting:
         raise ConventionError(
             f'marker units: stated {stated!r}, but the markers span {extent:g} {stated} and the '
             f'subject is {stature:g} m tall'
             + (f' (it would fit {fitting[0]!r})' if fitting else '')
-            + ': correct the stature or give the option units'
+            + ': correct subject.stature or give --units'
         )
     return UNIT_METRES[stated], (
         f'Marker units: {stated} ({"option" if option else "stated in the file"}; the markers '
@@ -102,11 +113,11 @@ def vertical_axis(
     if cosine < _AXIS_COSINE and option is None:
         raise ConventionError(
             f'vertical axis: the trunk is over the feet along {np.round(upward, 3).tolist()}, '
-            'which is near no axis: give the option vertical (+x, -x, ... -z)'
+            'which is near no axis: give --vertical (+x, -x, ... -z)'
         )
     if option is not None and option != axis:
         raise ConventionError(
-            f'vertical axis: option says {option}, but the trunk is over the feet along {axis}'
+            f'vertical axis: --vertical says {option}, but the trunk is over the feet along {axis}'
         )
     for plate in plates:
         force = _mean(plate.force)
@@ -131,34 +142,31 @@ def facing_axis(
     ConventionError
         The two disagree, or the direction is near no axis.
     """
-    directions = {}
-    for name, back, front in (('feet', 'heel', 'toe'), ('pelvis', 'pelvis_back', 'pelvis_front')):
-        start, end = roles.mean(positions, back), roles.mean(positions, front)
-        if start is not None and end is not None:
-            vector = _mean(end - start)
-            vector = vector - (vector @ up) * up
-            directions[name] = vector / np.linalg.norm(vector)
+    directions = _directions(positions, up, roles)
     if not directions:
         roles.require(positions, 'heel')
         roles.require(positions, 'toe')
-    if len(directions) == 2 and directions['feet'] @ directions['pelvis'] < _AXIS_COSINE:
-        angle = np.degrees(np.arccos(np.clip(directions['feet'] @ directions['pelvis'], -1, 1)))
-        raise ConventionError(
-            f'facing direction: toes and pelvis point {angle:.0f} degrees apart: are the heel, '
-            'toe and pelvis markers labelled rightly?'
-        )
+    if len(directions) == 2:
+        cosine = float(directions['feet'] @ directions['pelvis'])
+        if cosine < (0.0 if option else _AXIS_COSINE):
+            angle = np.degrees(np.arccos(np.clip(cosine, -1, 1)))
+            raise ConventionError(
+                f'facing direction: toes and pelvis point {angle:.0f} degrees apart: correct the '
+                'labels of heels, toes and pelvis (recording.rename in the subject file)'
+                + ('' if option else ', or give --facing (+x, -x, ... -z) if the person stands so')
+            )
     forward = np.sum(list(directions.values()), axis=0)
     axis, cosine = _nearest_axis(forward)
     if option is not None:
         if AXES[option] @ forward <= 0.0 or abs(AXES[option] @ up) > 0.0:
             raise ConventionError(
-                f'facing direction: option says {option}, but the markers face {axis}'
+                f'facing direction: --facing says {option}, but the markers face {axis}'
             )
         return option, f'Facing direction in the file: {option} (option).'
     if cosine < _AXIS_COSINE:
         raise ConventionError(
             f'facing direction: the person faces {np.round(forward, 2).tolist()}, between two '
-            'axes: give the option facing (+x, -x, ... -z)'
+            'axes: give --facing (+x, -x, ... -z)'
         )
     angle = np.degrees(np.arccos(min(1.0, cosine)))
     return axis, (
@@ -167,37 +175,80 @@ def facing_axis(
     )
 
 
+def _directions(positions: Array, up: Array, roles: MarkerRoles) -> dict[str, Array]:
+    """Return the horizontal unit vectors from heel to toe and from back to front of the pelvis."""
+    found = {}
+    feet = []
+    for side in SIDES:
+        heel, toe = (roles.mean(positions, role, side) for role in ('heel', 'toe'))
+        if heel is not None and toe is not None:
+            feet.append(_mean(toe - heel))
+    if feet:
+        found['feet'] = np.sum(feet, axis=0)
+    back, front = (roles.centre(positions, role) for role in ('pelvis_back', 'pelvis_front'))
+    if back is not None and front is not None:
+        found['pelvis'] = _mean(front - back)
+    level = {name: vector - (vector @ up) * up for name, vector in found.items()}
+    return {name: vector / np.linalg.norm(vector) for name, vector in level.items()}
+
+
 def rotation(up: str, facing: str) -> Array:
     """Return the matrix from the file's axes to x forward, y left, z up; shape (3, 3)."""
     return np.stack((AXES[facing], np.cross(AXES[up], AXES[facing]), AXES[up]))
 
 
 def check_sides(markers: Array, roles: MarkerRoles) -> str:
-    """Check that markers called right are on the right (y left, so smaller y).
+    """Check that markers called right are on the right of the person in the median of the frames.
+
+    The direction of the person is taken from the pelvis frame by frame: who turns, or stands with
+    one foot before the other, is not taken for a person with exchanged labels.
 
     Raises
     ------
     ConventionError
         Naming the markers that lie on the wrong side.
     """
-    wrong, checked = [], []
+    wrong, checked, unclear = [], [], []
+    leftward = _leftward(markers, roles)
     for role in ('heel', 'toe', 'pelvis_front', 'pelvis_back', 'trunk'):
         right, left = (roles.mean(markers, role, side) for side in SIDES)
         if right is None or left is None:
             continue
-        checked.append(role)
-        apart = float(np.nanmean(left[:, 1] - right[:, 1]))
-        if apart <= 0.0:
-            columns = roles.columns(role, 'right') + roles.columns(role, 'left')
-            names = ' and '.join(roles.names[c] for c in columns)
-            wrong.append(f'{names} ({apart * 1e3:+.0f} mm)')
+        across = np.sum((left - right) * leftward, axis=1)
+        if not np.isfinite(across).any():
+            continue
+        apart = float(np.nanmedian(across))
+        columns = roles.columns(role, 'right') + roles.columns(role, 'left')
+        names = f'{" and ".join(roles.names[c] for c in columns)} ({apart * 1e3:+.0f} mm)'
+        if apart < -_CROSSED:
+            wrong.append(names)
+        elif apart <= 0.0:
+            unclear.append(names)
+        else:
+            checked.append(role)
     if wrong:
         raise ConventionError(
             'left and right: the marker called left lies to the right of the other for '
             + ', '.join(wrong)
-            + ': labels are swapped; correct them with recording.rename in the subject file'
+            + ': labels are swapped; correct them in the subject file, for example '
+            'recording: {rename: {RHEE: LHEE, LHEE: RHEE}}'
         )
-    return f'Left and right: labels agree with the facing direction ({", ".join(checked)}).'
+    said = f'Left and right: labels agree with the facing direction ({", ".join(checked)}).'
+    return said + (f' Not settled for {", ".join(unclear)}.' if unclear else '')
+
+
+def _leftward(markers: Array, roles: MarkerRoles) -> Array:
+    """Return the horizontal unit vector (n, 3) to the left of the person; y if not known."""
+    leftward = np.tile((0.0, 1.0, 0.0), (len(markers), 1))
+    back, front = (roles.centre(markers, role) for role in ('pelvis_back', 'pelvis_front'))
+    if back is not None and front is not None:
+        forward = (front - back)[:, :2]
+        length = np.linalg.norm(forward, axis=1)
+        seen = length > 0.0
+        leftward[seen, :2] = (
+            np.stack((-forward[seen, 1], forward[seen, 0]), axis=1) / length[seen, None]
+        )
+    return leftward
 
 
 def check_floor(markers: Array, roles: MarkerRoles, height: float) -> str:
@@ -214,7 +265,7 @@ def check_floor(markers: Array, roles: MarkerRoles, height: float) -> str:
     lowest = float(np.nanmin(feet))
     if not _FLOOR_BAND[0] <= lowest <= _FLOOR_BAND[1]:
         raise ConventionError(
-            f'floor: the lowest foot marker is at z = {lowest:.3f} m: give the option '
-            'floor_height, the height of the floor in the axes of the file [m]'
+            f'floor: the lowest foot marker is at z = {lowest:.3f} m: give --floor-height, the '
+            'height of the floor in the axes of the file [m]'
         )
     return f'Floor: z = 0 at {height:g} m in the file; lowest foot marker {lowest * 1e3:.0f} mm.'

@@ -123,6 +123,8 @@ def read_raw(
         raw = read_trc_and_forces(markers, forces, prefix)
     else:
         raise FileFormatError(markers, f'marker files are .c3d or .trc, not {kind!r}')
+    if not raw.time.size:
+        raise FileFormatError(markers, 'holds no frame')
     positions, notes = without_zeros(markers, raw.names, raw.positions)
     return replace(raw, positions=positions, notes=(*raw.notes, *notes))
 
@@ -153,6 +155,8 @@ def import_recording(options: ImportOptions) -> ImportReport:
     if options.output.exists():
         raise BagError(f'{options.output} exists already; it is not overwritten')
     raw = read_raw(options.markers, options.forces, entry.recording.emg, options.label_prefix)
+    if raw.time.size < 2:
+        raise FileFormatError(options.markers, 'holds one frame; a recording needs two or more')
     raw = rename_markers(raw, entry)
     subject = entry.subject
     carried = Carried(subject.mass, entry.task.box_mass, tuple(entry.recording.box_markers))

@@ -2,29 +2,73 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which markers tell front from back, right from left and up from down.
 
-Known names stand in `data/marker_roles.csv`; the subject file can name others.
+Known names stand in `data/marker_roles.csv`; the subject file can name others. Case, blanks and
+punctuation make no difference, the side may stand before or after the name, and OpenCap's ending
+``_study`` is left out: ``RHEE``, ``r heel``, ``R.Heel``, ``heel_right`` and ``r_calc_study`` are
+all known.
 """
 
 from __future__ import annotations
 
 import csv
-from collections.abc import Mapping
+import re
+from collections.abc import Iterator, Mapping
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 
+from human_model.constants import SIDES
 from human_model.typing import Array
 from lifting_recordings.exceptions import ConventionError
 
 ROLES = ('pelvis_front', 'pelvis_back', 'heel', 'toe', 'trunk')
+#: Role whose markers stand in for another where that has none.
+_STAND_IN = {'toe': 'forefoot'}
+#: Names that a message lists.
+_LISTED = 12
+
+_SIDE = {'r': 'right', 'right': 'right', 'l': 'left', 'left': 'left'}
+_BEFORE = re.compile(r'(right|left|r|l)(.+)')
+# After the name a side counts only behind a separator or, as a capital, behind a small letter.
+_AFTER = re.compile(r'(.+?)(?:[\W_]+(?i:(right|left|r|l))|(?<=[a-z])(R|L|Right|Left))')
+
+
+def _folded(text: str) -> str:
+    return re.sub(r'[\W_]+', '', text.lower())
 
 
 @cache
-def _known() -> tuple[tuple[str, str, str], ...]:
+def _known() -> dict[tuple[str, bool], tuple[str, str]]:
+    """Return role and side of each folded name, and whether it needs a side."""
     path = Path(__file__).parent / 'data' / 'marker_roles.csv'
     with path.open(newline='', encoding='utf-8') as file:
-        return tuple((r['role'], r['side'], r['marker']) for r in csv.DictReader(file))
+        return {
+            (_folded(row['marker']), row['side'] == 'both'): (row['role'], row['side'])
+            for row in csv.DictReader(file)
+        }
+
+
+def _meanings(name: str) -> Iterator[tuple[str, str]]:
+    """Yield the name without its side, folded, and the side; '' if it has none."""
+    name = re.sub(r'[\W_]*study$', '', name, flags=re.IGNORECASE)
+    folded = _folded(name)
+    yield folded, ''
+    if before := _BEFORE.fullmatch(folded):
+        yield before[2], _SIDE[before[1]]
+    if folded.startswith(('right', 'left')):
+        yield folded[1:], _SIDE[folded[0]]
+    if after := _AFTER.fullmatch(name):
+        yield _folded(after[1]), _SIDE[(after[2] or after[3]).lower()]
+
+
+def known_role(name: str) -> tuple[str, str] | None:
+    """Return role and side of a marker by its name; None if it is not known."""
+    for base, side in _meanings(name):
+        found = _known().get((base, bool(side)))
+        if found is not None:
+            return found[0], side or found[1]
+    return None
 
 
 class MarkerRoles:
@@ -46,11 +90,9 @@ class MarkerRoles:
     def __init__(self, names: tuple[str, ...], extra: Mapping[str, str] | None = None) -> None:
         self._columns: dict[tuple[str, str], list[int]] = {}
         exact = {name: i for i, name in enumerate(names)}
-        folded = {name.lower(): i for i, name in enumerate(names)}
-        for role, side, marker in _known():
-            column = exact.get(marker, folded.get(marker.lower()))
-            if column is not None:
-                self._add(role, side, column)
+        for name, column in exact.items():
+            if (found := known_role(name)) is not None:
+                self._add(*found, column)
         for marker, text in (extra or {}).items():
             role, _, side = text.partition(' ')
             if role not in ROLES or side not in ('right', 'left', 'middle'):
@@ -72,8 +114,13 @@ class MarkerRoles:
 
     def columns(self, role: str, side: str | None = None) -> list[int]:
         """Return the marker columns with this role, of one side or of all."""
-        sides = ('right', 'left', 'middle') if side is None else (side,)
-        return [c for s in sides for c in self._columns.get((role, s), [])]
+        sides = (*SIDES, 'middle') if side is None else (side,)
+        stand_in = _STAND_IN.get(role, role)
+        return [
+            column
+            for s in sides
+            for column in self._columns.get((role, s)) or self._columns.get((stand_in, s), [])
+        ]
 
     def mean(self, positions: Array, role: str, side: str | None = None) -> Array | None:
         """Return the mean place of a role per frame, or None when no marker has it.
@@ -82,21 +129,48 @@ class MarkerRoles:
         ----------
         positions : ndarray, shape (n, n_markers, 3)
             Any units; NaN where not seen.
+        role : str
+            One of `ROLES`.
+        side : str, optional
+            'right', 'left' or 'middle'; without it all.
 
         Returns
         -------
         ndarray, shape (n, 3), or None
-            NaN in frames where a marker of the role is missing.
+            NaN in frames where a marker of the role is missing; a marker that is seen in less
+            than half of the frames of the most seen one does not count.
         """
-        columns = self.columns(role, side)
-        return positions[:, columns].mean(axis=1) if columns else None
+        columns = np.array(self.columns(role, side), dtype=int)
+        if not columns.size:
+            return None
+        seen = np.isfinite(positions[:, columns, 0]).sum(axis=0)
+        kept = columns[(seen > 0) & (2 * seen >= seen.max())]
+        return positions[:, kept].mean(axis=1) if kept.size else None
+
+    def centre(self, positions: Array, role: str) -> Array | None:
+        """Return the place of a role in the sagittal plane per frame, from both sides or neither.
+
+        Returns
+        -------
+        ndarray, shape (n, 3), or None
+            Of the middle of right and left, else of the markers in the middle; None if only one
+            side has a marker.
+        """
+        right, left = (self.mean(positions, role, side) for side in SIDES)
+        if right is not None and left is not None:
+            return 0.5 * (right + left)
+        return self.mean(positions, role, 'middle')
 
     def require(self, positions: Array, role: str, side: str | None = None) -> Array:
         """As `mean`, but a missing role is an error that says how to name it."""
         found = self.mean(positions, role, side)
         if found is None or not np.any(np.isfinite(found)):
+            which = f'{role} {side or "right"}'
+            names = ', '.join(self.names[:_LISTED])
+            more = f' and {len(self.names) - _LISTED} more' if len(self.names) > _LISTED else ''
             raise ConventionError(
-                f'no marker with the role {role!r}{f" ({side})" if side else ""} among '
-                f'{", ".join(self.names)}: name it in the subject file under recording.roles'
+                f'no marker with the role {role!r}{f" ({side})" if side else ""} is seen: name it '
+                f'in the subject file, for example recording: {{roles: {{MARKER: {which}}}}}, '
+                f'with MARKER one of {names}{more}'
             )
         return found

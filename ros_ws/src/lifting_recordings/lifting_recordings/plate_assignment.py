@@ -66,7 +66,7 @@ def by_name(plates: tuple[Plate, ...], option: Mapping[str, str]) -> dict[str, s
         found = [p.name for p in plates if p.name == name or p.name.endswith(f'_{name}')]
         if len(found) != 1:
             raise ConventionError(
-                f'--plate {name}={load}: option names {name!r}; the file has '
+                f'--plate {name}={load}: the file has no plate of this name, it has '
                 f'{[p.name for p in plates]}'
             )
         wishes[found[0]] = load
@@ -173,7 +173,7 @@ def assign_plates(
         wanted = wishes.get(plate.name)
         if wanted in SIDES and near is not None and wanted != near:
             raise ConventionError(
-                f'plate {plate.name!r}: option says {wanted}, its centre of pressure says {near} '
+                f'plate {plate.name!r}: --plate says {wanted}, its centre of pressure says {near} '
                 f'({place})'
             )
         load, why = wanted or near, 'option' if wanted else 'centre of pressure'
@@ -184,7 +184,7 @@ def assign_plates(
         if load is None:
             raise ConventionError(
                 f'plate {plate.name!r}: its centre of pressure is near no foot or near both '
-                f'({place}), its load is {place.load:.0f} N: give the option '
+                f'({place}), its load is {place.load:.0f} N: give '
                 f'--plate {plate.name}=SIDE with right, left, both, box or none'
             )
         if load == BOX:
