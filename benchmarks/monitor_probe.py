@@ -11,11 +11,11 @@ from __future__ import annotations
 
 from collections import Counter
 
-from builtin_interfaces.msg import Time
-from lifting_interfaces.msg import JointTorques, MuscleAnalysis, SpineLoad
+from lifting_interfaces.msg import SpineLoad
 from std_msgs.msg import Header
 
 from injury_monitor.injury_monitor_node import InjuryMonitorNode
+from lifting_messages import Message, encode, make
 from lifting_node import qos
 from lifting_node.run import run_node
 
@@ -32,19 +32,19 @@ class ProbedMonitorNode(InjuryMonitorNode):
         self._parts: Counter[tuple[int, int]] = Counter()
         self._judged = self.advertise(Header, 'judged', qos.FRAMES)
 
-    def _on_spine_load(self, message: SpineLoad) -> None:
+    def _on_spine_load(self, message: Message) -> None:
         super()._on_spine_load(message)
         self._part(message)
 
-    def _on_joint_torques(self, message: JointTorques) -> None:
+    def _on_joint_torques(self, message: Message) -> None:
         super()._on_joint_torques(message)
         self._part(message)
 
-    def _on_muscle_analysis(self, message: MuscleAnalysis) -> None:
+    def _on_muscle_analysis(self, message: Message) -> None:
         super()._on_muscle_analysis(message)
         self._part(message)
 
-    def _part(self, message: SpineLoad | JointTorques | MuscleAnalysis) -> None:
+    def _part(self, message: Message) -> None:
         if message.source != SpineLoad.LIVE:
             return
         stamp = message.header.stamp
@@ -52,8 +52,7 @@ class ProbedMonitorNode(InjuryMonitorNode):
         self._parts[key] += 1
         if self._parts[key] == PARTS:
             del self._parts[key]
-            # A stamp of its own: the message is but a view of a serialised one.
-            self._judged.publish(Header(stamp=Time(sec=stamp.sec, nanosec=stamp.nanosec)))
+            self._judged.publish(encode(make('std_msgs/Header', stamp=stamp)))
 
 
 if __name__ == '__main__':

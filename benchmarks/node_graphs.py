@@ -13,7 +13,6 @@ hears lie until a recording is over, so that it takes no time from what it measu
 from __future__ import annotations
 
 import os
-import struct
 import subprocess
 import time
 from collections.abc import Iterable
@@ -35,6 +34,7 @@ from human_model.typing import Array
 from lifting_cli.graph import Graph
 from lifting_cli.node_process import PARAMETERS, NodeProcess, discovery, start_module
 from lifting_cli.recording_summary import summarise
+from lifting_messages.stamps import stamp_of
 from lifting_node import qos
 
 ROOT: Final = Path(__file__).resolve().parents[1]
@@ -57,8 +57,6 @@ GENTLE: Final = 3.0
 """Time [s] a process has to end before it is killed."""
 STAMPS: Final = 1e-4
 """Differences [s] of stamps below which they are of the same frame."""
-_STAMP: Final = struct.Struct('<iI')
-_CDR_HEAD: Final = 4
 
 
 class Station:
@@ -97,8 +95,8 @@ class Station:
 
     def listen(self) -> None:
         """Take what has come: stamps of frames with DDS' times of sending and of arrival [s]."""
-        self.sent += _taken(self._markers, 'source_timestamp')
-        self.judged += _taken(self._judgements, 'received_timestamp')
+        self.sent += _taken(self._markers, 'Markers', 'source_timestamp')
+        self.judged += _taken(self._judgements, 'std_msgs/Header', 'received_timestamp')
 
     def start_player(self, bag: Path) -> None:
         """Start a paused player of a recording."""
@@ -141,14 +139,13 @@ def _nobody(_message: bytes) -> None:
     """Stand for the callback of a subscription that is never spun."""
 
 
-def _taken(subscription: Subscription, time_of: str) -> list[tuple[float, float]]:
+def _taken(subscription: Subscription, name: str, time_of: str) -> list[tuple[float, float]]:
     """Stamps of the messages that lie in a subscription, each with a time that DDS has noted."""
     taken = []
     with subscription.handle:
         while (one := subscription.handle.take_message(subscription.msg_type, True)) is not None:
             data, info = one
-            seconds, nanoseconds = _STAMP.unpack_from(data, _CDR_HEAD)
-            taken.append((seconds + 1e-9 * nanoseconds, 1e-9 * info[time_of]))
+            taken.append((1e-9 * stamp_of(data, name), 1e-9 * info[time_of]))
     return taken
 
 

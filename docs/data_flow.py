@@ -156,7 +156,7 @@ LABELS = (
     ),
     Label(198, 254, ('measured_lift',)),
     Label(726, 290, ('body_motion (live)', 'measured_lift')),
-    Label(484, 280, ('measured_lift', 'body_motion (once)'), 'topic', 'end'),
+    Label(484, 280, ('measured_lift',), 'topic', 'end'),
     Label(405, 332, ('predicted_lift',), 'topic', 'middle'),
     Label(258, 422, ('predicted_lift',)),
     Label(12, 428, ('lift_comparison', 'predicted_lift/joint_trajectory')),

@@ -12,6 +12,7 @@ from human_model.report import SolveStatus
 from lifting_cli.cli import main
 from lifting_cli.graph_errors import GraphError
 from lifting_cli.offline import run_offline
+from lifting_messages.names import join, split
 from lifting_recordings.bag_writer import BagWriter
 from lifting_recordings.exceptions import BagError
 from lifting_recordings.reader import BagReader
@@ -149,9 +150,7 @@ def test_one_plate_that_falls_silent_is_named(broken):
 def test_markers_in_millimetres_are_refused(broken):
     def change(topic, _, message):
         if topic == 'markers':
-            for marker in message.markers:
-                place = marker.translation
-                place.x, place.y, place.z = (1000.0 * v for v in (place.x, place.y, place.z))
+            message.positions *= 1000.0
         return message
 
     found = broken(change, STANDING)
@@ -165,9 +164,10 @@ def test_markers_that_are_not_numbers(broken, bags, offline):
 
     def change(topic, time, message):
         if topic == 'markers':
-            for k, marker in enumerate(message.markers):
-                if k == 7 or 4.6 <= time < 4.8:
-                    marker.translation.x = np.nan
+            x = message.positions[::3]
+            x[7] = np.nan
+            if 4.6 <= time < 4.8:
+                x[:] = np.nan
         return message
 
     found = broken(change, None)
@@ -186,11 +186,12 @@ def test_markers_that_are_not_numbers(broken, bags, offline):
 
 
 def test_swapped_sides_are_named(broken):
+    sides = {'L': 'R', 'R': 'L'}
+
     def change(topic, _, message):
         if topic == 'markers':
-            for marker in message.markers:
-                first, rest = marker.marker_name[0], marker.marker_name[1:]
-                marker.marker_name = {'L': 'R', 'R': 'L'}.get(first, first) + rest
+            names = split(message.names)
+            message.names = join(sides.get(name[0], name[0]) + name[1:] for name in names)
         return message
 
     found = broken(change)
@@ -204,8 +205,7 @@ def test_two_swapped_markers_are_not_good_data(broken):
 
     def change(topic, _, message):
         if topic == 'markers':
-            for marker in message.markers:
-                marker.marker_name = pair.get(marker.marker_name, marker.marker_name)
+            message.names = join(pair.get(name, name) for name in split(message.names))
         return message
 
     found = broken(change, STANDING)

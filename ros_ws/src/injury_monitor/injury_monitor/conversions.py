@@ -20,15 +20,10 @@ from injury_monitor.core.rnle_assessment import LiftEnds
 from injury_monitor.core.validation import FloatArray
 from injury_monitor.core.work import Work
 from lifting_messages.message_types import Message, make, message_type
+from lifting_messages.names import split
 from lifting_messages.stamps import header, to_seconds, to_stamp
 
 _SPINE_LOAD = message_type('SpineLoad')
-
-_BLOCK = ('header', 'lift_id', 'source', 'time_from_start', 'status')
-#: What the monitor looks at in the analyzer's messages.
-SPINE_FIELDS = (*_BLOCK, 'compression', 'anterior_shear')
-TORQUE_FIELDS = (*_BLOCK, 'joint_names', 'torque', 'torque_lower', 'torque_upper')
-ACTIVATION_FIELDS = (*_BLOCK, 'muscle_names', 'activation')
 
 _SOURCES = {_SPINE_LOAD.MEASURED: MEASURED, _SPINE_LOAD.PREDICTED: PREDICTED}
 
@@ -108,28 +103,30 @@ def spine_from_msg(message: Message) -> SpineSeries:
 def torques_from_msg(message: Message) -> TorqueSeries:
     """Return the joint torques of a block."""
     time, solved = block_clock(message)
+    joints = split(message.joint_names)
     torque, lower, upper = (
-        rows(message, field, time.size, len(message.joint_names))
+        rows(message, field, time.size, len(joints))
         for field in ('torque', 'torque_lower', 'torque_upper')
     )
-    return TorqueSeries(time, tuple(message.joint_names), torque, lower, upper, solved)
+    return TorqueSeries(time, joints, torque, lower, upper, solved)
 
 
 def activations_from_msg(message: Message) -> ActivationSeries:
     """Return the muscle activations of a block."""
     time, solved = block_clock(message)
-    activation = rows(message, 'activation', time.size, len(message.muscle_names))
-    return ActivationSeries(time, tuple(message.muscle_names), activation, solved)
+    muscles = split(message.muscle_names)
+    activation = rows(message, 'activation', time.size, len(muscles))
+    return ActivationSeries(time, muscles, activation, solved)
 
 
 def ends_from_msg(lift: Message) -> LiftEnds:
     """Return the places of hands and ankles at the first and last sample of a lift."""
     motion = lift.motion
-    names = list(motion.point_names)
+    names = split(motion.point_names)
     wanted = ('hand_r', 'hand_l', 'ankle_r', 'ankle_l')
     missing = [name for name in wanted if name not in names]
     if missing:
-        raise InvalidInputError('MeasuredLift.motion.point_names', names, f'lacks {missing}')
+        raise InvalidInputError('MeasuredLift.motion.point_names', list(names), f'lacks {missing}')
     time = to_seconds(motion.header.stamp) + np.asarray(motion.time_from_start, np.float64)
     points = rows(motion, 'points', time.size, 3 * len(names)).reshape(time.size, -1, 3)
     start = to_seconds(lift.header.stamp)
@@ -202,8 +199,8 @@ def assessment_to_msg(result: RiskAssessment, start: float) -> Message:
         unit=[row.unit for row in rows_],
         limit_source=[row.limit_source for row in rows_],
         time_from_start=[row.time for row in rows_],
-        unnecessary_compression=result.avoidable_compression,
-        unnecessary_shear=result.avoidable_shear,
+        avoidable_compression=result.avoidable_compression,
+        avoidable_shear=result.avoidable_shear,
         torque_index_joints=list(joints),
         torque_index_measured=measured,
         torque_index_predicted=predicted,

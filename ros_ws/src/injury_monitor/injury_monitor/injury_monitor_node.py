@@ -13,7 +13,6 @@ from typing import Any
 
 from lifting_interfaces.msg import (
     AlarmEvent,
-    BodyMotion,
     JointTorques,
     MeasuredLift,
     MuscleAnalysis,
@@ -25,7 +24,6 @@ from lifting_interfaces.msg import (
 )
 from lifting_interfaces.srv import AcknowledgeAlarm, ResetAlarm, ShelveAlarm
 from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
-from rclpy.subscription import Subscription
 
 from injury_monitor import conversions
 from injury_monitor.core import alarm_event
@@ -39,11 +37,9 @@ from injury_monitor.core.exceptions import (
 from injury_monitor.core.journal import AlarmJournal
 from injury_monitor.core.lift_parts import MEASURED, PREDICTED, LiftCollector, LiftParts
 from injury_monitor.core.monitor import InjuryMonitor
-from lifting_messages import encode
+from lifting_messages import Message, encode
 from lifting_messages.stamps import to_seconds
 from lifting_node import qos
-from lifting_node.cdr import CdrError
-from lifting_node.message_view import viewed
 from lifting_node.pipeline_node import PipelineNode
 from lifting_node.run import run_node
 
@@ -52,7 +48,7 @@ class InjuryMonitorNode(PipelineNode):
     """Alarms and assessments of one station; the namespace is the station."""
 
     PACKAGE = 'injury_monitor'
-    INPUT_ERRORS = (InjuryMonitorError, CdrError)
+    INPUT_ERRORS = (InjuryMonitorError,)
 
     def build(self) -> None:
         """Create the monitor, its publishers, subscriptions and services."""
@@ -69,39 +65,17 @@ class InjuryMonitorNode(PipelineNode):
             known=self._journal.known() if self._journal is not None else (),
         )
         self._collector = LiftCollector(self.values['result_wait'])
-        self._subject: Subject | None = None
-        self._task: Task | None = None
+        self._subject: Message | None = None
+        self._task: Message | None = None
         self._early: deque[Callable[[], None]] = deque(maxlen=qos.FRAME_DEPTH)
         self.filter_delay = math.nan
         self._alarms = self.advertise(AlarmEvent, 'alarms', qos.RESULTS)
         self._assessments = self.advertise(RiskAssessment, 'risk_assessment', qos.RESULTS)
         self.subscribe(Subject, 'subject', self._on_subject, qos.LATCHED)
         self.subscribe(Task, 'task', self._on_task, qos.LATCHED)
-        # Only for its filter delay, which does not change: dropped after the first message.
-        self._delay_input: Subscription | None = self.create_subscription(
-            BodyMotion, 'body_motion', self._on_body_motion, qos.FRAMES
-        )
-        self.subscribe(
-            SpineLoad,
-            'spine_load',
-            viewed(SpineLoad, self._on_spine_load, conversions.SPINE_FIELDS),
-            qos.FRAMES,
-            raw=True,
-        )
-        self.subscribe(
-            JointTorques,
-            'joint_torques',
-            viewed(JointTorques, self._on_joint_torques, conversions.TORQUE_FIELDS),
-            qos.FRAMES,
-            raw=True,
-        )
-        self.subscribe(
-            MuscleAnalysis,
-            'muscle_analysis',
-            viewed(MuscleAnalysis, self._on_muscle_analysis, conversions.ACTIVATION_FIELDS),
-            qos.FRAMES,
-            raw=True,
-        )
+        self.subscribe(SpineLoad, 'spine_load', self._on_spine_load, qos.FRAMES)
+        self.subscribe(JointTorques, 'joint_torques', self._on_joint_torques, qos.FRAMES)
+        self.subscribe(MuscleAnalysis, 'muscle_analysis', self._on_muscle_analysis, qos.FRAMES)
         self.subscribe(MeasuredLift, 'measured_lift', self._on_measured_lift, qos.RESULTS)
         self.subscribe(PredictedLift, 'predicted_lift', self._on_predicted_lift, qos.RESULTS)
         self._operator_services = [
@@ -109,21 +83,20 @@ class InjuryMonitorNode(PipelineNode):
             self.create_service(ResetAlarm, '~/reset_alarm', self._reset),
             self.create_service(ShelveAlarm, '~/shelve_alarm', self._shelve),
         ]
-        self._housekeeping = self.create_timer(1.0, self._keep_house)
+        self._housekeeping = self.create_timer(1.0, self._assess_ready)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Drop the services and the timer with the rest."""
         for service in self._operator_services:
             self.destroy_service(service)
         self.destroy_timer(self._housekeeping)
-        self._drop_delay_input()
         return super().on_cleanup(state)
 
-    def _on_subject(self, message: Subject) -> None:
+    def _on_subject(self, message: Message) -> None:
         self._subject = message
         self._configure()
 
-    def _on_task(self, message: Task) -> None:
+    def _on_task(self, message: Message) -> None:
         self._task = message
         self._configure()
 
@@ -139,22 +112,11 @@ class InjuryMonitorNode(PipelineNode):
         while self._early:
             self._early.popleft()()
 
-    def _on_body_motion(self, message: BodyMotion) -> None:
-        self.filter_delay = message.filter_delay
-
-    def _drop_delay_input(self) -> None:
-        if self._delay_input is not None:
-            self.destroy_subscription(self._delay_input)
-            self._delay_input = None
-
-    def _keep_house(self) -> None:
-        if not math.isnan(self.filter_delay):
-            self._drop_delay_input()
-        self._assess_ready()
-
-    def _on_spine_load(self, message: SpineLoad) -> None:
+    def _on_spine_load(self, message: Message) -> None:
         source = conversions.lift_source(message)
         series = conversions.spine_from_msg(message)
+        if not source:
+            self.filter_delay = message.filter_delay
         if source:
             self._collect(message.lift_id, lambda parts: parts.spine.update({source: series}))
         elif self._ready_for_samples(partial(self._on_spine_load, message)):
@@ -172,7 +134,7 @@ class InjuryMonitorNode(PipelineNode):
                     )
                 )
 
-    def _on_joint_torques(self, message: JointTorques) -> None:
+    def _on_joint_torques(self, message: Message) -> None:
         source = conversions.lift_source(message)
         series = conversions.torques_from_msg(message)
         if source:
@@ -192,7 +154,7 @@ class InjuryMonitorNode(PipelineNode):
                     )
                 )
 
-    def _on_muscle_analysis(self, message: MuscleAnalysis) -> None:
+    def _on_muscle_analysis(self, message: Message) -> None:
         source = conversions.lift_source(message)
         series = conversions.activations_from_msg(message)
         if source:
@@ -212,7 +174,7 @@ class InjuryMonitorNode(PipelineNode):
                     )
                 )
 
-    def _on_measured_lift(self, message: MeasuredLift) -> None:
+    def _on_measured_lift(self, message: Message) -> None:
         ends = conversions.ends_from_msg(message)
         start = to_seconds(message.header.stamp)
 
@@ -221,7 +183,7 @@ class InjuryMonitorNode(PipelineNode):
 
         self._collect(message.lift_id, take)
 
-    def _on_predicted_lift(self, message: PredictedLift) -> None:
+    def _on_predicted_lift(self, message: Message) -> None:
         if message.report.status != 0:
             reason = f'prediction failed: {message.report.message}'
 

@@ -59,7 +59,6 @@ class Station:
         topics = {
             'subject': (Subject, qos.LATCHED),
             'task': (Task, qos.LATCHED),
-            'body_motion': (BodyMotion, qos.FRAMES),
             'spine_load': (SpineLoad, qos.FRAMES),
             'joint_torques': (JointTorques, qos.FRAMES),
             'muscle_analysis': (MuscleAnalysis, qos.FRAMES),
@@ -122,6 +121,7 @@ class Station:
             message = SpineLoad(
                 source=SpineLoad.LIVE,
                 lift_id='lift_001',
+                filter_delay=0.045,
                 compression=part,
                 anterior_shear=[0.0] * len(part),
                 status=[status] * len(part),
@@ -171,7 +171,7 @@ def send_analysis(station, source, compression):
         block(
             JointTorques,
             source,
-            joint_names=['hip'],
+            joint_names='hip',
             torque=[10.0, 50.0, *[10.0] * 4],
             torque_lower=[-100.0] * 6,
             torque_upper=[100.0] * 6,
@@ -179,7 +179,7 @@ def send_analysis(station, source, compression):
     )
     station.send(
         'muscle_analysis',
-        block(MuscleAnalysis, source, muscle_names=['MF_m1s_r'], activation=[0.2] * 6),
+        block(MuscleAnalysis, source, muscle_names='MF_m1s_r', activation=[0.2] * 6),
     )
 
 
@@ -193,7 +193,7 @@ def send_measured_lift(station):
     motion = BodyMotion(
         time_from_start=[0.0, 0.5, 1.0],
         points=points.ravel().tolist(),
-        point_names=['hand_r', 'hand_l', 'ankle_r', 'ankle_l'],
+        point_names='hand_r\nhand_l\nankle_r\nankle_l',
     )
     motion.header.stamp = to_stamp(10.0)
     lift = MeasuredLift(lift_id='lift_001', duration=1.0, motion=motion)
@@ -203,16 +203,12 @@ def send_measured_lift(station):
 
 def test_alarm_is_raised_acknowledged_and_reset(station, monkeypatch):
     station.bring_up()
-    station.send('body_motion', BodyMotion(filter_delay=0.045))
-    station.until(lambda: station.node.filter_delay == 0.045, 'filter delay')
     station.live(100.0, [600.0] * 50 + [7000.0] * 50 + [600.0] * 80)
     station.until(lambda: len(station.alarms) == 4, 'two alarms raised and returned')
     raised = {message.alarm_id: message for message in station.alarms[:2]}
     assert set(raised) == {HIGH, HIGH_HIGH}
     assert to_seconds(raised[HIGH].header.stamp) == pytest.approx(100.55)
     assert raised[HIGH].filter_delay == 0.045
-    body_motion = station.publishers['body_motion']
-    station.until(lambda: body_motion.get_subscription_count() == 0, 'end of reading motion')
     assert raised[HIGH].station == 'test_test_alarm_is_raised_acknowledged_and_reset'
     request = {'alarm_id': HIGH_HIGH, 'operator_id': 'panel 1'}
     refused = station.call(ResetAlarm, 'reset_alarm', ResetAlarm.Request(**request))
@@ -244,7 +240,7 @@ def test_lift_is_assessed_once_with_both_parts(station):
     send_analysis(station, SpineLoad.PREDICTED, 2400.0)
     station.until(lambda: station.assessments, 'assessment')
     result = station.assessments[0]
-    assert result.unnecessary_compression == pytest.approx(1200.0)
+    assert result.avoidable_compression == pytest.approx(1200.0)
     assert result.zone == RiskAssessment.ZONE_ACTION
     assert result.torque_index_joints == ['hip']
     assert result.torque_index_measured[0] == pytest.approx(0.5)
@@ -266,7 +262,7 @@ def test_failed_prediction_is_not_waited_for(station):
     )
     station.send('predicted_lift', failed)
     station.until(lambda: station.assessments, 'assessment')
-    assert np.isnan(station.assessments[0].unnecessary_compression)
+    assert np.isnan(station.assessments[0].avoidable_compression)
     assert 'box too heavy' in station.assessments[0].summary
 
 
@@ -296,10 +292,10 @@ def test_bad_messages_are_counted_and_the_node_goes_on(station):
     station.send('task', Task(task_id='bad', coupling=Task.COUPLING_GOOD, box_mass=-1.0))
     station.until(lambda: station.node.counts['errors'] == 2, 'second error')
     assert 'box_mass' in station.node.last_error
-    torques = JointTorques(source=JointTorques.LIVE, joint_names=['knee'], torque=[1.0])
-    station.send('joint_torques', serialize_message(torques).replace(b'knee', b'\xff\xff\xff\xff'))
+    torques = JointTorques(source=JointTorques.LIVE, joint_names='knee', torque=[1.0])
+    station.send('joint_torques', serialize_message(torques).replace(b'knee', b'\xff' * 4))
     station.until(lambda: station.node.counts['errors'] == 3, 'third error')
-    assert 'JointTorques.joint_names' in station.node.last_error
+    assert 'JointTorques' in station.node.last_error
     station.live(0.0, [7000.0] * 50, status=302)
     station.live(10.0, [7000.0] * 50)
     station.until(lambda: len(station.alarms) == 2, 'alarms from good samples')

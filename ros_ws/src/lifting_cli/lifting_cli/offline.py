@@ -171,7 +171,7 @@ class OfflineGraph:
         status = quality_from_msg(message).status
         assert self._analyzer is not None  # A motion exists only after person and task.
         analysis = self._analyzer.analyze(motion, lift_id, source, status)
-        spine = muscle_messages.spine_load_to_msg(analysis, mass, self._disc)
+        spine = muscle_messages.spine_load_to_msg(analysis, mass, self._disc, message.filter_delay)
         torques = muscle_messages.torques_to_msg(self._analyzer.joint_torques(analysis, motion))
         muscles = muscle_messages.analysis_to_msg(analysis)
         self._emit('spine_load', spine)

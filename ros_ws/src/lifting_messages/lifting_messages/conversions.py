@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Messages of the core types that all rooms share, and back."""
+"""Messages of the core types that all packages share, and back."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from human_model.report import SolveReport, SolveStatus
 from human_model.subject import Calibration, Subject
 from human_model.typing import Array
 from lifting_messages.message_types import Message, make, message_type
+from lifting_messages.names import join, split
 from lifting_messages.stamps import header, to_seconds
 
 #: Frame of all Cartesian values: x forward, y left, z up, on the floor.
@@ -163,13 +164,13 @@ def motion_to_msg(motion: BodyMotion, quality: MotionQuality) -> Message:
         header=header(float(motion.time[0]), LABORATORY),
         skeleton=motion.skeleton,
         time_from_start=flat(motion.time - motion.time[0]),
-        coordinate_names=list(motion.coordinates),
+        coordinate_names=join(motion.coordinates),
         position=flat(motion.position),
         velocity=flat(motion.velocity),
         acceleration=flat(motion.acceleration),
-        point_names=list(motion.point_names),
+        point_names=join(motion.point_names),
         points=flat(motion.points),
-        frame_names=list(motion.frame_names),
+        frame_names=join(motion.frame_names),
         frames=flat(motion.frames),
         ground_force=flat(motion.ground_force),
         centre_of_pressure=flat(motion.centre_of_pressure),
@@ -199,9 +200,9 @@ def motion_from_msg(message: Message) -> BodyMotion:
         shape = (n, *tail)
         return data.reshape(shape) if data.size == math.prod(shape) else data
 
-    coordinates = tuple(message.coordinate_names)
-    points = tuple(message.point_names)
-    frames = tuple(message.frame_names)
+    coordinates = split(message.coordinate_names)
+    points = split(message.point_names)
+    frames = split(message.frame_names)
     return BodyMotion(
         time=time,
         skeleton=message.skeleton,

@@ -19,6 +19,19 @@ class ParameterError(LiftingMessagesError):
     """A parameter value was refused; the text names node, parameter, value and range."""
 
 
+class NameListError(LiftingMessagesError):
+    """A name that cannot stand in a list of names.
+
+    Attributes
+    ----------
+    name : str
+    """
+
+    def __init__(self, name: str) -> None:
+        super().__init__(f'{name!r}: a name in a message is neither empty nor has a line break')
+        self.name = name
+
+
 class MessageError(LiftingMessagesError):
     """Bytes that are no message of the type that they should have.
 

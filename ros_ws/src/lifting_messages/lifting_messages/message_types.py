@@ -8,6 +8,7 @@ is the one codec between it and the bytes of a topic or a recording.
 
 from __future__ import annotations
 
+import struct
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -24,6 +25,10 @@ from lifting_messages.exceptions import MessageError, MessageTypeError
 Message: TypeAlias = Any
 
 _PACKAGE = 'lifting_interfaces'
+
+#: Bytes before the fields of a serialised message; the first two are the order of bytes.
+_HEAD = 4
+_BIG_ENDIAN, _LITTLE_ENDIAN = b'\0\0', b'\0\1'
 
 
 def interface_folder() -> Path:
@@ -165,7 +170,18 @@ def decode(data: bytes, name: str) -> Message:
         If the data are no message of this type.
     """
     name = full_name(name)
+    if len(data) < _HEAD or data[:2] not in (_BIG_ENDIAN, _LITTLE_ENDIAN):
+        raise MessageError(name, len(data), 'they do not begin as plain CDR')
+    store = typestore()
+    definition = store.get_msgdef(name)
+    little = data[:2] == _LITTLE_ENDIAN
+    take = definition.deserialize_cdr_le if little else definition.deserialize_cdr_be
     try:
-        return typestore().deserialize_cdr(data, name)
-    except (SerdeError, IndexError) as error:
+        # Not `deserialize_cdr`: it refuses bytes after the message, as rclpy's serialize_message
+        # leaves them; ROS 2 ignores them.
+        message, end = take(data[_HEAD:], 0, definition.cls, store)
+    except (SerdeError, struct.error, IndexError, ValueError) as error:
         raise MessageError(name, len(data), str(error)) from error
+    if end + _HEAD > len(data):
+        raise MessageError(name, len(data), 'the message is cut off')
+    return message

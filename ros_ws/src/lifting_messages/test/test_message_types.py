@@ -45,13 +45,19 @@ def test_fixed_arrays_have_their_length():
     assert make('Task').box_size.tolist() == [0.0, 0.0, 0.0]
 
 
-@pytest.mark.parametrize('cut', [0, 3, 40, -1])
+@pytest.mark.parametrize('cut', [0, 1, 3, 4, 40, -1])
 def test_bytes_that_are_no_message_are_refused(cut):
     """The error names the type and the number of bytes."""
     data = encode(make('SpineLoad', status=np.zeros(9, np.uint16)))[:cut]
     with pytest.raises(MessageError, match='lifting_interfaces/msg/SpineLoad') as caught:
         decode(data, 'SpineLoad')
     assert caught.value.size == len(data)
+
+
+def test_bytes_after_a_message_are_ignored():
+    """As rclpy's serialize_message leaves them, and as ROS 2 ignores them."""
+    data = encode(make('SpineLoad', compression=np.ones(2)))
+    assert encode(decode(data + b'left over', 'SpineLoad')) == data
 
 
 def test_an_unknown_type_is_refused_by_name():

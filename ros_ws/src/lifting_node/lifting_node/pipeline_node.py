@@ -22,6 +22,7 @@ from rclpy.lifecycle import (
 from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
 
+from lifting_messages import LiftingMessagesError, Message, decode
 from lifting_messages.parameters import load_table
 from lifting_node.garbage import TimedSearch
 from lifting_node.parameters import declare
@@ -60,24 +61,25 @@ class PipelineNode(LifecycleNode):
         self,
         message_type: type,
         topic: str,
-        callback: Callable[[Any], None],
+        callback: Callable[[Message], None],
         qos: QoSProfile,
-        *,
-        raw: bool = False,
     ) -> None:
         """Subscribe with bad input reported and counted instead of ending the node.
 
-        With `raw` the callback gets the serialised message, for streams of thousands a second.
+        The callback gets the message as `lifting_messages` decodes it: rclpy takes four times as
+        long for arrays of numbers.
         """
+        refused: tuple[type[Exception], ...] = (LiftingMessagesError, *self.INPUT_ERRORS)
+        name = f'{message_type.__module__.partition(".")[0]}/msg/{message_type.__name__}'
 
-        def guarded(message: Any) -> None:
+        def guarded(data: Any) -> None:
             self.counts[topic] += 1
             try:
-                callback(message)
-            except self.INPUT_ERRORS as error:
+                callback(decode(data, name))
+            except refused as error:
                 self.report_error(f'{topic}: {error}')
 
-        self._inputs.append(self.create_subscription(message_type, topic, guarded, qos, raw=raw))
+        self._inputs.append(self.create_subscription(message_type, topic, guarded, qos, raw=True))
 
     def advertise(self, message_type: type, topic: str, qos: QoSProfile) -> LifecyclePublisher:
         """Create a publisher that is silent unless the node is active."""

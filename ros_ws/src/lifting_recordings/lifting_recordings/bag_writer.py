@@ -30,6 +30,7 @@ from rosbags.rosbag2.errors import WriterError
 
 from human_model.typing import Array
 from lifting_messages import typestore
+from lifting_messages.names import join
 from lifting_recordings.exceptions import BagError
 
 WORLD = 'world'
@@ -136,22 +137,14 @@ class BagWriter:
         return self.make('geometry_msgs/msg/Vector3', x=x, y=y, z=z)
 
     def markers(self, stamp_ns: int, frame: int, names: tuple[str, ...], places: Array) -> Any:
-        """Return a Markers message; markers with NaN are left out."""
-        seen = np.flatnonzero(np.all(np.isfinite(places), axis=1))
+        """Return a Markers message; a place with NaN is that of a marker that was not seen."""
+        unseen = ~np.all(np.isfinite(places), axis=1, keepdims=True)
         return self.make(
             'lifting_interfaces/msg/Markers',
             header=self.header(stamp_ns),
             frame_number=frame,
-            markers=[
-                self.make(
-                    'lifting_interfaces/msg/Marker',
-                    id_type=2,
-                    marker_index=int(i),
-                    marker_name=names[i],
-                    translation=self.point(places[i]),
-                )
-                for i in seen
-            ],
+            names=join(names),
+            positions=np.where(unseen, np.nan, places).ravel(),
         )
 
     def wrench(self, stamp_ns: int, force: Array, moment: Array) -> Any:

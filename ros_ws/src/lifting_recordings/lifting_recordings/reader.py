@@ -22,7 +22,8 @@ from rosbags.rosbag2.errors import ReaderError
 from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
 
-from lifting_messages import typestore
+from lifting_messages import encode, typestore
+from lifting_messages.current_form import current_form, is_current
 from lifting_recordings.exceptions import MessageTypeError, UnreadableBagError
 from lifting_recordings.mcap_recovery import Recovered, has_footer, recover
 
@@ -294,6 +295,8 @@ class BagReader:
     ) -> Iterator[tuple[str, int, Any]]:
         """Yield (topic, stamp [ns], decoded message); arguments as `raw_messages`.
 
+        Messages of earlier definitions come in today's form (`lifting_messages.current_form`).
+
         Raises
         ------
         MessageTypeError
@@ -306,8 +309,26 @@ class BagReader:
                 raise MessageTypeError(
                     f'{self.path}: topic {name}: no definition of {names[name]}'
                 )
+        earlier = {name for name, kind in names.items() if not is_current(kind, store)}
         for topic, stamp, data in self.raw_messages(topics, start_ns):
-            yield topic, stamp, store.deserialize_cdr(data, names[topic])
+            message = store.deserialize_cdr(data, names[topic])
+            if topic in earlier:
+                message = current_form(message, names[topic])
+            yield topic, stamp, message
+
+    def current_messages(
+        self, topics: Collection[str], start_ns: int | None = None
+    ) -> Iterator[tuple[str, int, bytes]]:
+        """Yield what `raw_messages` yields, in today's form: of the types `current_type` gives."""
+        types = {name: self.topics[name].msgtype for name in topics}
+        earlier = {name for name, kind in types.items() if not is_current(kind, self.types)}
+        for topic, stamp, data in self.raw_messages(topics, start_ns):
+            if topic in earlier:
+                kind = types[topic]
+                message = current_form(self.types.deserialize_cdr(data, kind), kind)
+                yield topic, stamp, encode(message)
+            else:
+                yield topic, stamp, data
 
 
 def _topic(connection: Connection, more: int) -> BagTopic:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from rosbags.interfaces import QosDurability
 
+from lifting_messages.names import split
 from lifting_recordings.bag_writer import START_TIME_NS
 from lifting_recordings.exceptions import BagError, FileFormatError, SubjectFileError
 from lifting_recordings.importer import ImportOptions, import_recording
@@ -75,10 +76,8 @@ def test_round_trip_through_trc_mot_and_bag(files, standing):
             assert message.header.frame_id == 'world'
             if topic == '/markers':
                 assert message.frame_number == i
-                for marker in message.markers:
-                    column = standing.raw.names.index(marker.marker_name)
-                    place = marker.translation
-                    markers[i, column] = place.x, place.y, place.z
+                columns = [standing.raw.names.index(name) for name in split(message.names)]
+                markers[i, columns] = message.positions.reshape(-1, 3)
             else:
                 w = message.wrench
                 force[i] = w.force.x, w.force.y, w.force.z
@@ -196,5 +195,5 @@ def test_real_squats_import_with_one_call(tmp_path):
     assert subject.calibration_rms < 0.005
     assert len(subject.marker_names) * 3 == subject.marker_offsets.size
     # Row 1 of the file: C7 at (-0.278799, 1.46173, -0.61037), x forward, y up, z right.
-    c7 = next(m.translation for m in first.markers if m.marker_name == 'C7')
-    np.testing.assert_allclose((c7.x, c7.y, c7.z), (-0.278799, 0.61037, 1.46173), atol=1e-9)
+    c7 = first.positions.reshape(-1, 3)[split(first.names).index('C7')]
+    np.testing.assert_allclose(c7, (-0.278799, 0.61037, 1.46173), atol=1e-9)

@@ -51,8 +51,8 @@ def risk_from_assessment(message: Any) -> Risk:
         )
     return Risk(
         tuple(rows),
-        float(message.unnecessary_compression),
-        float(message.unnecessary_shear),
+        float(message.avoidable_compression),
+        float(message.avoidable_shear),
         Zone(message.zone).name.lower(),
         message.summary,
         int(message.samples_left_out),

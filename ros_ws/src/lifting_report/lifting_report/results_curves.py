@@ -16,6 +16,7 @@ from lift_predictor.core.exceptions import LiftPredictorError
 from lift_predictor.core.models.sagittal.person import Person
 from lift_predictor.core.models.sagittal.plane import SagittalPlane, sagittal_motion
 from lifting_messages.conversions import motion_from_msg
+from lifting_messages.names import split
 from lifting_report.report_data import (
     Activations,
     BodyPoints,
@@ -98,11 +99,11 @@ def block_time(message: Any, start: float) -> Array:
 def activations(message: Any, start: float) -> Activations:
     """Return the muscle activations of a block of a lift that starts at `start` [s]."""
     time = block_time(message, start)
-    shape = (time.size, len(message.muscle_names))
+    muscles = split(message.muscle_names)
     return Activations(
         time,
-        tuple(message.muscle_names),
-        np.reshape(message.activation, shape),
+        muscles,
+        np.reshape(message.activation, (time.size, len(muscles))),
         np.asarray(message.status) == 0,
     )
 
@@ -124,7 +125,7 @@ def spine_curves(message: Any, start: float) -> SpineCurves:
 def joint_loads(message: Any, start: float) -> JointLoads:
     """Return the loads of all joints of a block; only peaks are shown, so `start` is not used."""
     del start
-    names = tuple(message.joint_names)
+    names = split(message.joint_names)
     force = np.asarray(message.force, np.float64).reshape(-1, len(names), 3)
     everywhere = np.asarray(message.status) == 0
     lumbar = np.asarray(message.lumbar_status) == 0

@@ -35,7 +35,7 @@ def measured_lift():
     motion = BodyMotion(
         time_from_start=[0.0, 0.5, 1.0],
         points=points.ravel().tolist(),
-        point_names=['hand_r', 'hand_l', 'ankle_r', 'ankle_l'],
+        point_names='hand_r\nhand_l\nankle_r\nankle_l',
     )
     return MeasuredLift(lift_id='lift_001', duration=1.0, motion=motion)
 

@@ -5,18 +5,20 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 
 import numpy as np
-from builtin_interfaces.msg import Time
 from geometry_msgs.msg import PoseStamped
 from lifting_interfaces.msg import BodyMotion, MeasuredLift, PredictedLift, SpineLoad, Task
 from lifting_interfaces.msg import Subject as SubjectMsg
 from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
-from std_msgs.msg import Header, String
+from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
 
 from human_model.exceptions import HumanModelError
+from human_model.typing import Array
+from lifting_messages import Message, encode
 from lifting_messages.conversions import (
     LABORATORY,
     lift_from_msg,
@@ -24,7 +26,7 @@ from lifting_messages.conversions import (
     quality_from_msg,
     subject_from_msg,
 )
-from lifting_messages.stamps import split
+from lifting_messages.stamps import to_stamp
 from lifting_node import qos
 from lifting_node.pipeline_node import PipelineNode
 from lifting_node.run import run_node
@@ -62,8 +64,6 @@ class LiftingVisualizationNode(PipelineNode):
                 prefix=self._prefix(),
             )
         )
-        self._writer: conversions.TransformWriter | None = None
-        self._disc: dict[str, conversions.TransformWriter] = {}
         # Last stamp of live motion and when it came, by the data's and by the machine's clock.
         self._last = (0.0, time.monotonic())
         self._shown = 0.0
@@ -97,12 +97,8 @@ class LiftingVisualizationNode(PipelineNode):
         station = self.get_namespace().strip('/')
         return f'{station}/' if station else ''
 
-    def _on_subject(self, message: SubjectMsg) -> None:
-        self._writer = None
+    def _on_subject(self, message: Message) -> None:
         another = self.visualizer.set_subject(subject_from_msg(message))
-        if self.visualizer.links is not None:
-            links = self.visualizer.links
-            self._writer = conversions.TransformWriter(links.parents, links.children)
         if another:
             self._publish_person()
 
@@ -111,19 +107,19 @@ class LiftingVisualizationNode(PipelineNode):
         if links is None or not self.active:
             return
         now = self._now()
-        self._markers.publish(conversions.clear_msg(now))
+        self._markers.publish(encode(conversions.clear_msg(now)))
         self._description.publish(String(data=self.visualizer.urdf))
         if self.values['transforms']:
-            self._fixed.publish(conversions.fixed_to_msg(links, now))
+            self._fixed.publish(encode(conversions.fixed_to_msg(links, now)))
 
-    def _on_task(self, message: Task) -> None:
+    def _on_task(self, message: Message) -> None:
         self.visualizer.set_box_size(message.box_size)
 
-    def _on_box(self, message: PoseStamped) -> None:
+    def _on_box(self, message: Message) -> None:
         turn = message.pose.orientation
         self.visualizer.set_box_orientation((turn.x, turn.y, turn.z, turn.w))
 
-    def _on_body_motion(self, message: BodyMotion) -> None:
+    def _on_body_motion(self, message: Message) -> None:
         if not self.active:
             self.counts['samples while not active'] += 1
             return
@@ -131,13 +127,14 @@ class LiftingVisualizationNode(PipelineNode):
         status = int(quality_from_msg(message).status[-1])
         stamp = float(motion.time[-1])
         self._last = (stamp, time.monotonic())
-        if self.values['transforms'] and self._writer is not None and status == 0:
+        links = self.visualizer.links
+        if self.values['transforms'] and links is not None and status == 0:
             places = self.visualizer.transforms(motion)
             if places is not None:
-                self._moving.publish(self._writer.message(message.header.stamp, places))
+                self._publish_frames(links.parents, links.children, message.header.stamp, places)
         self._draw(self.visualizer.picture(motion, status), message.header.stamp)
 
-    def _on_spine_load(self, message: SpineLoad) -> None:
+    def _on_spine_load(self, message: Message) -> None:
         loads = conversions.loads_from_msg(message)
         if message.source == SpineLoad.LIVE:
             self._move_disc(message.header, loads)
@@ -145,20 +142,24 @@ class LiftingVisualizationNode(PipelineNode):
         elif message.source == SpineLoad.PREDICTED:
             self.visualizer.set_predicted_load(message.lift_id, loads)
 
-    def _move_disc(self, header: Header, loads: SpineLoads) -> None:
+    def _move_disc(self, header: Message, loads: SpineLoads) -> None:
         """Publish where the disc's frame is, under the name that the loads have it by."""
         place = np.concatenate([loads.position[-1], loads.orientation[-1]])
         if not self.active or not self.values['transforms'] or not np.isfinite(place).all():
             return
-        name = header.frame_id
-        if name not in self._disc:
-            self._disc = {name: conversions.TransformWriter([LABORATORY], [name])}
-        self._moving.publish(self._disc[name].message(header.stamp, place))
+        self._publish_frames([LABORATORY], [header.frame_id], header.stamp, place[None])
 
-    def _on_measured_lift(self, message: MeasuredLift) -> None:
+    def _publish_frames(
+        self, parents: Sequence[str], children: Sequence[str], stamp: Message, places: Array
+    ) -> None:
+        self._moving.publish(
+            encode(conversions.transforms_to_msg(parents, children, stamp, places))
+        )
+
+    def _on_measured_lift(self, message: Message) -> None:
         self._draw(self.visualizer.set_measured(lift_from_msg(message)), self._now())
 
-    def _on_predicted_lift(self, message: PredictedLift) -> None:
+    def _on_predicted_lift(self, message: Message) -> None:
         motion = motion_from_msg(message.motion) if message.report.status == 0 else None
         self._shown = time.monotonic()
         self._draw(
@@ -170,15 +171,14 @@ class LiftingVisualizationNode(PipelineNode):
             elapsed = time.monotonic() - self._shown
             self._draw(self.visualizer.ghost_picture(elapsed), self._now())
 
-    def _draw(self, shapes: list[Shape], stamp: Time) -> None:
+    def _draw(self, shapes: list[Shape], stamp: Message) -> None:
         if shapes:
-            self._markers.publish(conversions.markers_to_msg(shapes, stamp))
+            self._markers.publish(encode(conversions.markers_to_msg(shapes, stamp)))
 
-    def _now(self) -> Time:
+    def _now(self) -> Message:
         """Return the data's time: that of the last live sample and what has passed since."""
         stamp, came = self._last
-        sec, nanosec = split(stamp + time.monotonic() - came if stamp else 0.0)
-        return Time(sec=sec, nanosec=nanosec)
+        return to_stamp(stamp + time.monotonic() - came if stamp else 0.0)
 
 
 def main(args: list[str] | None = None) -> None:

@@ -11,18 +11,18 @@ import pytest
 pytest.importorskip('rclpy', reason='rclpy is not installed')
 pytest.importorskip('tf2_msgs.msg', reason='tf2_msgs is neither built nor installed')
 
-from builtin_interfaces.msg import Time
-from lifting_interfaces.msg import SpineLoad
 from rclpy.serialization import deserialize_message
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker
 
+from lifting_messages import encode, make
+from lifting_messages.stamps import to_stamp
 from lifting_visualization import conversions
 from lifting_visualization.core.exceptions import PictureError
 from lifting_visualization.core.link_frames import LinkFrames
 from lifting_visualization.core.shapes import Kind, Shape, nothing
 
-STAMP = Time(sec=12, nanosec=500_000_000)
+STAMP = to_stamp(12.5)
 COLOUR = (0.25, 0.5, 0.75, 1.0)
 
 
@@ -72,16 +72,14 @@ def test_markers():
 @pytest.mark.parametrize('station', ['', 'a/', 'cell_3/', 'line_12_cell_3/'])
 def test_transforms(skeleton, station):
     links = LinkFrames(skeleton, station)
-    writer = conversions.TransformWriter(links.parents, links.children)
-    rng = np.random.default_rng(7)
-    for stamp in (Time(sec=1), STAMP):
-        values = links.transforms(skeleton.coordinates, rng.normal(size=40))
-        message = deserialize_message(writer.message(stamp, values), TFMessage)
+    values = links.transforms(skeleton.coordinates, np.random.default_rng(7).normal(size=40))
+    made = conversions.transforms_to_msg(links.parents, links.children, STAMP, values)
+    message = deserialize_message(encode(made), TFMessage)
     assert [t.child_frame_id for t in message.transforms] == list(links.children)
     assert message.transforms[0].header.frame_id == 'world'
     for entry, row in zip(message.transforms, values, strict=True):
         place, turn = entry.transform.translation, entry.transform.rotation
-        assert entry.header.stamp == STAMP
+        assert (entry.header.stamp.sec, entry.header.stamp.nanosec) == (12, 500_000_000)
         assert [place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w] == row.tolist()
     (head,) = conversions.fixed_to_msg(links, STAMP).transforms
     assert (head.header.frame_id, head.child_frame_id) == (f'{station}thorax', f'{station}head')
@@ -90,7 +88,8 @@ def test_transforms(skeleton, station):
 
 def load_message():
     """Return a message of two samples, the second not solved."""
-    message = SpineLoad(
+    message = make(
+        'SpineLoad',
         time_from_start=[0.0, 0.01],
         compression=[1.0, 2.0],
         status=[0, 301],
@@ -124,7 +123,7 @@ def test_loads_of_a_message():
 )
 def test_loads_that_do_not_fit_are_named(field, value, says):
     message = load_message()
-    setattr(message, field, value)
+    setattr(message, field, np.array(value))
     with pytest.raises(PictureError, match=says):
         conversions.loads_from_msg(message)
 

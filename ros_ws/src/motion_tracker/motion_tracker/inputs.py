@@ -10,6 +10,7 @@ import numpy as np
 
 from human_model.typing import Array
 from lifting_messages import Message
+from lifting_messages.names import split
 from lifting_messages.plate_blocks import block_samples
 from motion_tracker.core.exceptions import TrackerError
 from motion_tracker.core.tracked import Output
@@ -36,17 +37,19 @@ def push(tracker: MotionTracker, topic: str, message: Message) -> list[Output]:
     raise TrackerError(f'{topic}: the tracker has no such input')
 
 
-def markers_from_msg(message: Message) -> tuple[float, list[str], Array]:
-    """Return stamp [s], names and positions (n, 3) [m] of a marker frame."""
-    names = [marker.marker_name for marker in message.markers]
-    positions = np.array(
-        [
-            (marker.translation.x, marker.translation.y, marker.translation.z)
-            for marker in message.markers
-        ],
-        dtype=np.float64,
-    ).reshape(-1, 3)
-    return _seconds(message), names, positions
+def markers_from_msg(message: Message) -> tuple[float, tuple[str, ...], Array]:
+    """Return stamp [s], names and positions (n, 3) [m] of a marker frame; NaN: not seen.
+
+    Raises
+    ------
+    TrackerError
+        If there are not three coordinates for each name.
+    """
+    names = split(message.names)
+    positions = np.asarray(message.positions, np.float64)
+    if positions.size != 3 * len(names):
+        raise TrackerError(f'markers.positions: {positions.size} numbers for {len(names)} names')
+    return _seconds(message), names, positions.reshape(-1, 3)
 
 
 def wrench_from_msg(message: Message) -> tuple[float, Array, Array]:

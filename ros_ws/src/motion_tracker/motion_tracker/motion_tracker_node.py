@@ -31,9 +31,9 @@ from human_model.constants import SIDES
 from human_model.exceptions import HumanModelError
 from human_model.subject import Subject
 from human_model.typing import Array
-from lifting_messages import LiftingMessagesError, decode, encode
+from lifting_messages import LiftingMessagesError, Message, encode
 from lifting_messages.conversions import subject_from_msg
-from lifting_messages.plate_blocks import BLOCK, SAMPLE, block_samples
+from lifting_messages.plate_blocks import block_samples
 from lifting_node import qos
 from lifting_node.pipeline_node import PipelineNode
 from lifting_node.run import run_node
@@ -45,8 +45,6 @@ from motion_tracker.core.tracked import DetectedEvent, Notice, Output, TrackedFr
 from motion_tracker.core.tracked import MeasuredLift as TrackedLift
 from motion_tracker.core.tracker import MotionTracker
 from motion_tracker.core.warm_up import warm_up
-from motion_tracker.live_writer import LiveWriter
-from motion_tracker.marker_cdr import MarkerReader
 
 #: Samples kept until person and task are known: 20 s of two 2500 Hz plates.
 EARLY_SAMPLES: Final = 100_000
@@ -81,7 +79,6 @@ class MotionTrackerNode(PipelineNode):
         self._tracker: MotionTracker | None = None
         self._early: deque[Feed] = deque(maxlen=EARLY_SAMPLES)
         self._segmenter: RecordingSegmenter[Feed] = RecordingSegmenter()
-        self._writer = LiveWriter()
         self._recording = 0
         self._lifts = 0
         self._frames = 0
@@ -96,16 +93,13 @@ class MotionTrackerNode(PipelineNode):
         ]
         self.subscribe(SubjectMsg, 'subject', self._on_subject, qos.LATCHED)
         self.subscribe(Task, 'task', self._on_task, qos.LATCHED)
-        self._reader = MarkerReader()
-        self.subscribe(Markers, STREAMS['markers'], self._on_markers, qos.FRAMES, raw=True)
-        self.subscribe(PoseStamped, STREAMS['box'], self._on_box, qos.FRAMES, raw=True)
+        self.subscribe(Markers, STREAMS['markers'], self._on_markers, qos.FRAMES)
+        self.subscribe(PoseStamped, STREAMS['box'], self._on_box, qos.FRAMES)
         for side in SIDES:
             self.subscribe(
-                WrenchStamped, STREAMS[side], partial(self._on_wrench, side), qos.PLATES, raw=True
+                WrenchStamped, STREAMS[side], partial(self._on_wrench, side), qos.PLATES
             )
-            self.subscribe(
-                WrenchBlock, BLOCKS[side], partial(self._on_block, side), qos.PLATES, raw=True
-            )
+            self.subscribe(WrenchBlock, BLOCKS[side], partial(self._on_block, side), qos.PLATES)
         self._flush_service = self.create_service(Trigger, '~/flush', self._on_flush)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -138,23 +132,23 @@ class MotionTrackerNode(PipelineNode):
         self._task = task
         self._work_off_early()
 
-    def _on_markers(self, data: bytes) -> None:
-        stamp, names, positions = self._reader.read(data)
+    def _on_markers(self, message: Message) -> None:
+        stamp, names, positions = inputs.markers_from_msg(message)
         self._frames += 1
         if self._frames % COUNT_FRAMES == 0:
             self._report_counts()
         self._take('markers', stamp, lambda tracker: tracker.push_markers(stamp, names, positions))
 
-    def _on_box(self, data: bytes) -> None:
-        stamp, position = inputs.box_from_msg(decode(data, 'geometry_msgs/PoseStamped'))
+    def _on_box(self, message: Message) -> None:
+        stamp, position = inputs.box_from_msg(message)
         self._take('box', stamp, lambda tracker: tracker.push_box(stamp, position))
 
-    def _on_wrench(self, side: str, data: bytes) -> None:
-        stamp, force, moment = inputs.wrench_from_msg(decode(data, SAMPLE))
+    def _on_wrench(self, side: str, message: Message) -> None:
+        stamp, force, moment = inputs.wrench_from_msg(message)
         self._take(side, stamp, lambda tracker: tracker.push_wrench(side, stamp, force, moment))
 
-    def _on_block(self, side: str, data: bytes) -> None:
-        stamps, samples = block_samples(decode(data, BLOCK))
+    def _on_block(self, side: str, message: Message) -> None:
+        stamps, samples = block_samples(message)
         if all(before < after for before, after in pairwise(stamps)):
             self._take(side, stamps[0], _block_feed(side, stamps, samples))
             return
@@ -259,7 +253,7 @@ class MotionTrackerNode(PipelineNode):
     def _publish_one(self, output: Any) -> None:
         if isinstance(output, TrackedFrame):
             # First what the next node of the chain waits for.
-            self._motion.publish(self._writer.body_motion(output))
+            self._motion.publish(encode(conversions.body_motion_to_msg(output)))
             self._publish_beside(output)
             if output.message and not output.solution.ok:
                 self.report_error(f'frame not good: {output.message}')
@@ -281,16 +275,16 @@ class MotionTrackerNode(PipelineNode):
     def _publish_beside(self, frame: TrackedFrame) -> None:
         """Publish of a frame what no other node needs, where somebody listens."""
         if self._joints.get_subscription_count():
-            self._joints.publish(self._writer.joint_state(frame))
+            self._joints.publish(encode(conversions.joint_state_to_msg(frame)))
         if self._reaction.get_subscription_count():
-            reaction = self._writer.ground_reaction(frame)
+            reaction = conversions.ground_reaction_to_msg(frame)
             if reaction is not None:
-                self._reaction.publish(reaction)
+                self._reaction.publish(encode(reaction))
         for side, publisher in ((None, self._total_cop), *enumerate(self._cop)):
             if publisher.get_subscription_count():
-                point = self._writer.cop(frame, side)
+                point = conversions.cop_to_msg(frame, side)
                 if point is not None:
-                    publisher.publish(point)
+                    publisher.publish(encode(point))
 
 
 def _block_feed(side: str, stamps: list[float], samples: Array) -> Feed:

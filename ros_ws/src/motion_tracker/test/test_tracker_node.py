@@ -212,8 +212,7 @@ def test_bad_frames_are_reported_and_the_node_goes_on(station, recording):
         'person and task',
     )
     frame = next(message for topic, message in recording if topic == 'markers')
-    for marker in frame.markers:
-        marker.translation.x *= 1000.0
+    frame.positions = [1000.0 * value for value in frame.positions]
     station.publishers['markers'].publish(frame)
     station.until(lambda: station.node.counts['errors'] == 1, 'report')
     assert 'millimetres' in station.node.last_error

@@ -19,6 +19,7 @@ from lifting_messages.conversions import (
     vector,
 )
 from lifting_messages.message_types import Message, make, message_type
+from lifting_messages.names import join
 from lifting_messages.stamps import header
 from muscle_analyzer.core.loads.analysis import MuscleAnalysis
 from muscle_analyzer.core.loads.torque_limits import JointTorques
@@ -64,10 +65,10 @@ def analysis_to_msg(analysis: MuscleAnalysis) -> Message:
     return make(
         'MuscleAnalysis',
         **_block(analysis, analysis.status),
-        muscle_names=analysis.muscle_names,
+        muscle_names=join(analysis.muscle_names),
         activation=analysis.activation,
         force=analysis.force,
-        coordinate_names=analysis.coordinate_names,
+        coordinate_names=join(analysis.coordinate_names),
         torque=analysis.torque,
         reserve=analysis.reserve,
         pelvis_residual=analysis.pelvis_residual,
@@ -79,7 +80,9 @@ def analysis_to_msg(analysis: MuscleAnalysis) -> Message:
     )
 
 
-def spine_load_to_msg(analysis: MuscleAnalysis, box_mass: float, frame_id: str = DISC) -> Message:
+def spine_load_to_msg(
+    analysis: MuscleAnalysis, box_mass: float, frame_id: str = DISC, filter_delay: float = 0.0
+) -> Message:
     """Return the message of the L5-S1 load, with its own statuses.
 
     Parameters
@@ -90,6 +93,8 @@ def spine_load_to_msg(analysis: MuscleAnalysis, box_mass: float, frame_id: str =
         Mass in the hands [kg].
     frame_id
         Of the disc (`disc_frame_id`).
+    filter_delay
+        Of the motion that was analysed [s].
     """
     return make(
         'SpineLoad',
@@ -97,6 +102,7 @@ def spine_load_to_msg(analysis: MuscleAnalysis, box_mass: float, frame_id: str =
         subject=analysis.pseudonym,
         body_mass=analysis.body_mass,
         box_mass=box_mass,
+        filter_delay=filter_delay,
         compression=analysis.compression,
         anterior_shear=analysis.anterior_shear,
         lateral_shear=analysis.lateral_shear,
@@ -118,7 +124,7 @@ def joint_reactions_to_msg(analysis: MuscleAnalysis) -> Message:
         **_block(analysis, analysis.status),
         subject=analysis.pseudonym,
         body_mass=analysis.body_mass,
-        joint_names=analysis.joint_names,
+        joint_names=join(analysis.joint_names),
         force=analysis.joint_force,
         moment=analysis.joint_moment,
         disc_frame=analysis.disc_frame,
@@ -132,7 +138,7 @@ def torques_to_msg(torques: JointTorques) -> Message:
     return make(
         'JointTorques',
         **_block(torques, torques.status),
-        joint_names=torques.joint_names,
+        joint_names=join(torques.joint_names),
         torque=torques.torque,
         torque_lower=torques.lower,
         torque_upper=torques.upper,

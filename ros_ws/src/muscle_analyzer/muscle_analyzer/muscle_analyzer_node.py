@@ -29,11 +29,8 @@ from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 from human_model.exceptions import HumanModelError
 from human_model.named_subjects import named_subject, subject_names
 from human_model.subject import Subject
-from lifting_messages import Message
+from lifting_messages import Message, encode
 from lifting_node import qos
-from lifting_node.cdr import CdrError
-from lifting_node.message_view import viewed
-from lifting_node.message_writer import MessageWriter
 from lifting_node.pipeline_node import PipelineNode
 from lifting_node.run import run_node
 from muscle_analyzer import conversions
@@ -45,12 +42,6 @@ from muscle_analyzer.core.recruitment.static_optimization import StaticOptimizat
 from muscle_analyzer.core.subject.muscle_strength import StrengthScaling
 from muscle_analyzer.core.subject.segment_masses import MassDistribution
 from muscle_analyzer.lift_queue import LiftQueue, WaitingLift
-
-WRITERS: Final = {
-    kind: MessageWriter(kind)
-    for kind in (MuscleAnalysis, SpineLoad, JointReactions, JointTorques, WrenchStamped)
-}
-"""By type of message; they keep the bytes of names, which do not change."""
 
 WAITING_LIFTS: Final = 100
 """Lifts kept until their person is known and the node is active."""
@@ -72,7 +63,7 @@ class MuscleAnalyzerNode(PipelineNode):
     """Analyses live motion and whole lifts of one station; the namespace is the station."""
 
     PACKAGE = 'muscle_analyzer'
-    INPUT_ERRORS = (MuscleAnalyzerError, HumanModelError, CdrError)
+    INPUT_ERRORS = (MuscleAnalyzerError, HumanModelError)
 
     def build(self) -> None:
         """Read the model, load compiled functions; create publishers and subscriptions."""
@@ -96,8 +87,8 @@ class MuscleAnalyzerNode(PipelineNode):
         self._subject: Subject | None = None
         self._box_mass = float('nan')
         # Topics overtake each other: motion may come before the person and the task it belongs to.
-        self._early: deque[BodyMotion] = deque(maxlen=qos.FRAME_DEPTH)
-        self._waiting: OrderedDict[tuple[str, str], MeasuredLift | PredictedLift] = OrderedDict()
+        self._early: deque[Message] = deque(maxlen=qos.FRAME_DEPTH)
+        self._waiting: OrderedDict[tuple[str, str], Message] = OrderedDict()
         self._queue = LiftQueue(
             self.analyzer, self._lift_done, self._lift_failed, self.INPUT_ERRORS
         )
@@ -113,9 +104,7 @@ class MuscleAnalyzerNode(PipelineNode):
         self._reaction = self.advertise(WrenchStamped, 'l5_s1/reaction', qos.FRAMES)
         self.subscribe(SubjectMsg, 'subject', self._on_subject, qos.LATCHED)
         self.subscribe(Task, 'task', self._on_task, qos.LATCHED)
-        # Live samples are read from their bytes and written as bytes.
-        live = viewed(BodyMotion, self._on_body_motion)
-        self.subscribe(BodyMotion, 'body_motion', live, qos.FRAMES, raw=True)
+        self.subscribe(BodyMotion, 'body_motion', self._on_body_motion, qos.FRAMES)
         self.subscribe(MeasuredLift, 'measured_lift', self._on_measured_lift, qos.RESULTS)
         self.subscribe(PredictedLift, 'predicted_lift', self._on_predicted_lift, qos.RESULTS)
 
@@ -135,7 +124,7 @@ class MuscleAnalyzerNode(PipelineNode):
         self.destroy_timer(self._turn)
         return super().on_cleanup(state)
 
-    def _on_subject(self, message: SubjectMsg) -> None:
+    def _on_subject(self, message: Message) -> None:
         subject = conversions.subject_from_msg(message)
         # Lifts of the person before are analysed with that person's model.
         self._queue.finish()
@@ -145,7 +134,7 @@ class MuscleAnalyzerNode(PipelineNode):
         self._analyze_waiting()
         self._work_off_early()
 
-    def _on_task(self, message: Task) -> None:
+    def _on_task(self, message: Message) -> None:
         self._box_mass = message.box_mass
         self._work_off_early()
 
@@ -153,7 +142,7 @@ class MuscleAnalyzerNode(PipelineNode):
         while self._early and self._subject is not None and not math.isnan(self._box_mass):
             self._on_body_motion(self._early.popleft())
 
-    def _on_body_motion(self, message: BodyMotion) -> None:
+    def _on_body_motion(self, message: Message) -> None:
         if not self.active:
             self.counts['samples while not active'] += 1
             return
@@ -164,19 +153,19 @@ class MuscleAnalyzerNode(PipelineNode):
         motion = conversions.motion_from_msg(message)
         mass = conversions.mass_in_hands(motion, self._box_mass)
         analysis = self.analyzer.analyze(motion, '', 'live', message.status)
-        # First what alarms hang on.
-        spine = conversions.spine_load_to_msg(analysis, mass, self._disc)
-        self._spine.publish(_bytes(SpineLoad, spine))
+        # The load of the alarms first.
+        spine = conversions.spine_load_to_msg(analysis, mass, self._disc, message.filter_delay)
+        self._spine.publish(encode(spine))
         torques = self.analyzer.joint_torques(analysis, motion)
-        self._torques.publish(_bytes(JointTorques, conversions.torques_to_msg(torques)))
-        self._muscles.publish(_bytes(MuscleAnalysis, conversions.analysis_to_msg(analysis)))
+        self._torques.publish(encode(conversions.torques_to_msg(torques)))
+        self._muscles.publish(encode(conversions.analysis_to_msg(analysis)))
         # Nobody needs these at once, and often nobody listens.
         if self._joints.get_subscription_count():
             joints = conversions.joint_reactions_to_msg(analysis)
-            self._joints.publish(_bytes(JointReactions, joints))
+            self._joints.publish(encode(joints))
         if self._reaction.get_subscription_count():
             for reaction in conversions.reactions_to_msg(analysis, self._disc):
-                self._reaction.publish(_bytes(WrenchStamped, reaction))
+                self._reaction.publish(encode(reaction))
         self.counts['live samples'] += len(analysis)
         self.counts['live samples with good L5-S1 load'] += analysis.good_spine_samples
         self._last_live = time.monotonic()
@@ -184,16 +173,16 @@ class MuscleAnalyzerNode(PipelineNode):
         if self._queue:
             self._turn.reset()
 
-    def _on_measured_lift(self, message: MeasuredLift) -> None:
+    def _on_measured_lift(self, message: Message) -> None:
         self._wait('measured', message)
 
-    def _on_predicted_lift(self, message: PredictedLift) -> None:
+    def _on_predicted_lift(self, message: Message) -> None:
         if message.report.status != 0:
             self.counts['failed predictions'] += 1
             return
         self._wait('predicted', message)
 
-    def _wait(self, source: str, message: MeasuredLift | PredictedLift) -> None:
+    def _wait(self, source: str, message: Message) -> None:
         self._waiting[source, message.lift_id] = message
         while len(self._waiting) > WAITING_LIFTS:
             (kind, lift_id), _ = self._waiting.popitem(last=False)
@@ -232,28 +221,23 @@ class MuscleAnalyzerNode(PipelineNode):
     def _lift_done(self, lift: WaitingLift, analysis: Analysis) -> Iterator[None]:
         """Publish the analysis of a whole lift, message by message."""
         spine = conversions.spine_load_to_msg(analysis, lift.box_mass, self._disc)
-        self._spine.publish(_bytes(SpineLoad, spine))
+        self._spine.publish(encode(spine))
         yield
         torques = self.analyzer.joint_torques(analysis, lift.motion)
-        self._torques.publish(_bytes(JointTorques, conversions.torques_to_msg(torques)))
+        self._torques.publish(encode(conversions.torques_to_msg(torques)))
         yield
         # Half a megabyte: made in one step, sent in the next.
-        muscles = _bytes(MuscleAnalysis, conversions.analysis_to_msg(analysis))
+        muscles = encode(conversions.analysis_to_msg(analysis))
         yield
         self._muscles.publish(muscles)
         yield
-        self._joints.publish(_bytes(JointReactions, conversions.joint_reactions_to_msg(analysis)))
+        self._joints.publish(encode(conversions.joint_reactions_to_msg(analysis)))
         yield
         self.get_logger().info(
             f'{lift.lift_id} {lift.source}: peak L5-S1 compression '
             f'{analysis.peak_compression:.0f} N; {analysis.good_spine_samples} of '
             f'{len(analysis)} samples good; {analysis.spine_report.message}'
         )
-
-
-def _bytes(kind: type, message: Message) -> bytes:
-    """Return a message serialised."""
-    return WRITERS[kind].write(vars(message))
 
 
 def main(args: list[str] | None = None) -> None:

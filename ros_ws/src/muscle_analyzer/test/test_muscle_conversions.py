@@ -75,7 +75,7 @@ def check_block(message):
 def test_muscle_analysis(analysis):
     message = conversions.analysis_to_msg(analysis)
     check_block(message)
-    assert list(message.muscle_names) == ['a', 'b', 'c']
+    assert message.muscle_names == 'a\nb\nc'
     np.testing.assert_array_equal(np.reshape(message.force, (N, N_M)), analysis.force)
     np.testing.assert_array_equal(np.reshape(message.activation, (N, N_M)), analysis.activation)
     np.testing.assert_array_equal(np.reshape(message.torque, (N, N_C)), analysis.torque)
@@ -135,7 +135,7 @@ def test_reaction_only_of_good_samples(analysis):
 def test_joint_reactions(analysis):
     message = conversions.joint_reactions_to_msg(analysis)
     check_block(message)
-    assert list(message.joint_names) == ['l5_s1', 'hip_r']
+    assert message.joint_names == 'l5_s1\nhip_r'
     np.testing.assert_array_equal(message.force, analysis.joint_force.ravel())
     np.testing.assert_array_equal(message.moment, analysis.joint_moment.ravel())
     assert (message.subject, message.body_mass) == ('p01', 63.5)
@@ -159,7 +159,7 @@ def test_joint_torques(analysis):
     assert list(message.torque) == [1.0, 2.0, 3.0, 4.0]
     assert list(message.torque_lower) == [-1.0, -2.0, -3.0, -4.0]
     assert list(message.torque_upper) == [2.0, 4.0, 6.0, 8.0]
-    assert (list(message.joint_names), list(message.status)) == (['hip', 'knee'], [0, 305])
+    assert (message.joint_names, list(message.status)) == ('hip\nknee', [0, 305])
 
 
 def test_live_samples_say_so(analysis):

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """`lift play`: publish a bag in its own time, at a rate, without losing a message.
 
-Serialised messages are forwarded as they are. A message that is late is sent at once; none is
-dropped: streams are reliable and keep all, so a subscriber that cannot follow slows the player.
+Serialised messages are forwarded as they are, those of earlier definitions in today's form. A
+message that is late is sent at once; none is dropped: streams are reliable and keep all, so a
+subscriber that cannot follow slows the player.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from std_srvs.srv import SetBool
 from lifting_cli.transport.play_options import PlayControl, PlayOptions, PlayReport
 from lifting_cli.transport.qos import message_class, publisher_profile
 from lifting_cli.transport.ros_context import own_node
+from lifting_messages.current_form import MARKERS, current_type
 from lifting_messages.plate_blocks import BLOCK, block_topic, in_blocks, is_plate
 from lifting_recordings.exceptions import PlaybackError
 from lifting_recordings.reader import BagReader, BagTopic
@@ -33,7 +35,7 @@ from lifting_recordings.reader import BagReader, BagTopic
 # Alarms in a bag are history: played again they would raise the plant's alarms a second time.
 HISTORY_TYPES = ('lifting_interfaces/msg/AlarmEvent',)
 # A block of plate samples ends with a message of these.
-FRAME_TYPES = ('lifting_interfaces/msg/Markers',)
+FRAME_TYPES = (MARKERS,)
 _CLOCK_TOPIC = '/clock'
 _EARLY_NS = 100_000
 _POLL_SECONDS = 0.02
@@ -116,7 +118,7 @@ class _Playback:
                 self._skipped[name] = reason
                 say(f'{name} is not played: {reason}')
                 continue
-            msgtype = topic.msgtype
+            msgtype = current_type(topic.msgtype)
             if name in self._plates:
                 full, msgtype = block_topic(full), BLOCK
             publishers[name] = self._node.create_publisher(
@@ -131,7 +133,7 @@ class _Playback:
             return 'the player publishes its own clock'
         if topic.msgtype in HISTORY_TYPES and not self._options.play_alarms:
             return 'alarms of stored data are not raised again'
-        if message_class(topic.msgtype) is None:
+        if message_class(current_type(topic.msgtype)) is None:
             return f'message type {topic.msgtype} is not installed'
         return ''
 
@@ -206,19 +208,20 @@ class _Playback:
             and all(q.durability == QosDurability.TRANSIENT_LOCAL for q in qos)
         ]
         before: dict[str, tuple[str, int, bytes]] = {}
-        for name, stamp, data in self._bag.raw_messages(latched):
+        for name, stamp, data in self._bag.current_messages(latched):
             if stamp >= start:
                 break
             before[name] = (name, start, data)
-        if next(iter(self._bag.raw_messages(topics, start)), None) is None:
+        if next(iter(self._bag.current_messages(topics, start)), None) is None:
             raise PlaybackError(
                 f'{self._bag.path}: no message after {self._options.start:g} s '
                 f'(the bag is {(self._bag.end_ns - self._bag.start_ns) * 1e-9:g} s long)'
             )
-        frames = [name for name in topics if self._bag.topics[name].msgtype in FRAME_TYPES]
+        types = {name: current_type(self._bag.topics[name].msgtype) for name in topics}
+        frames = [name for name, kind in types.items() if kind in FRAME_TYPES]
 
         def turn() -> Iterable[tuple[str, int, bytes]]:
-            messages = chain(before.values(), self._bag.raw_messages(topics, start))
+            messages = chain(before.values(), self._bag.current_messages(topics, start))
             return in_blocks(messages, self._plates, frames) if self._plates else messages
 
         if self._bag.size > _HELD_IN_MEMORY:

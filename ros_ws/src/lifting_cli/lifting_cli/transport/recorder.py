@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import struct
 import threading
 import time
 from collections.abc import Callable
@@ -14,13 +13,12 @@ from typing import Any
 
 from rclpy.executors import Executor
 from rclpy.node import Node
-from rosbags.interfaces import Nodetype
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
-from rosbags.typesys.store import Typestore
 
 from lifting_cli.transport.qos import message_class, recorded_quality, subscription_profile
 from lifting_cli.transport.ros_context import own_node
 from lifting_messages import typestore
+from lifting_messages.stamps import stamp_of
 from lifting_recordings.bag_writer import BAG_VERSION, quality
 from lifting_recordings.exceptions import BagError
 
@@ -28,9 +26,6 @@ _DISCOVERY_SECONDS = 0.1
 _SPIN_SECONDS = 0.05
 # Housekeeping of every node, not data of the graph.
 _HOUSEKEEPING = ('/rosout', '/parameter_events', '/clock')
-_STAMP_LITTLE, _STAMP_BIG = struct.Struct('<iI'), struct.Struct('>iI')
-_CDR_HEAD = 4
-_HEADER = (Nodetype.NAME, 'std_msgs/msg/Header')
 
 
 @dataclass(frozen=True)
@@ -195,11 +190,10 @@ class _Recording:
             offered_qos_profiles=[recorded_quality(latched, p) for p in offered],
         )
         self._counts[name] = 0
-        place = _stamp_place(store, msgtype)
         write, counts = self._writer.write, self._counts
 
         def on_message(data: bytes) -> None:
-            stamp = _stamp(data, place) if place else 0
+            stamp = stamp_of(data, msgtype)
             if stamp:
                 self._latest = max(self._latest, stamp)
             write(connection, stamp or self._latest or time.time_ns(), data)
@@ -207,28 +201,3 @@ class _Recording:
 
         self._node.create_subscription(cls, name, on_message, profile, raw=True)
         self._control.joined = frozenset(self._counts)
-
-
-def _stamp_place(store: Typestore, msgtype: str) -> int:
-    """Return where in a serialised message its stamp is, or that of its first part; 0: nowhere."""
-    kind, of = _first_field(store, msgtype)
-    if (kind, of) == _HEADER:
-        return _CDR_HEAD
-    # A list of stamped messages (markers, transforms): after its length.
-    if kind == Nodetype.SEQUENCE and of[0][0] == Nodetype.NAME:
-        return 2 * _CDR_HEAD if _first_field(store, of[0][1]) == _HEADER else 0
-    return 0
-
-
-def _first_field(store: Typestore, msgtype: str) -> tuple[Any, Any]:
-    fields = store.fielddefs[msgtype][1]
-    return fields[0][1] if fields else (None, None)
-
-
-def _stamp(data: bytes, place: int) -> int:
-    """Return the stamp at a place of a serialised message [ns]; 0 where there is none."""
-    layout = _STAMP_LITTLE if data[1] & 1 else _STAMP_BIG
-    if len(data) < place + layout.size:
-        return 0  # an empty list
-    seconds, nanoseconds = layout.unpack_from(data, place)
-    return int(seconds * 1_000_000_000 + nanoseconds)

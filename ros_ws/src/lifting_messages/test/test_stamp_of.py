@@ -1,14 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Where the recorder finds the stamp of a serialised message."""
+"""The stamp of a serialised message is read without the rest of it."""
 
 import pytest
 from rosbags.typesys import Stores, get_typestore
 
-pytest.importorskip('rclpy', reason='recording needs rclpy')
-
-from lifting_cli.transport.recorder import _stamp, _stamp_place
-from lifting_messages import typestore
+from lifting_messages import encode, make
+from lifting_messages.stamps import stamp_of
 
 STORE = get_typestore(Stores.ROS2_JAZZY)
 TYPES = STORE.types
@@ -39,13 +37,12 @@ def transforms(count):
 def test_stamp_of_a_message_or_of_its_first_part(make, little):
     message = make()
     data = bytes(STORE.serialize_cdr(message, message.__msgtype__, little_endian=little))
-    place = _stamp_place(typestore(), message.__msgtype__)
-    assert _stamp(data, place) == EXPECTED
+    assert stamp_of(data, message.__msgtype__) == EXPECTED
 
 
 def test_empty_list_has_no_stamp():
     data = bytes(STORE.serialize_cdr(transforms(0), 'tf2_msgs/msg/TFMessage'))
-    assert _stamp(data, _stamp_place(typestore(), 'tf2_msgs/msg/TFMessage')) == 0
+    assert stamp_of(data, 'tf2_msgs/msg/TFMessage') == 0
 
 
 @pytest.mark.parametrize(
@@ -58,8 +55,11 @@ def test_empty_list_has_no_stamp():
     ],
 )
 def test_messages_without_stamp(name):
-    assert _stamp_place(typestore(), name) == 0
+    assert stamp_of(encode(make(name)), name) == 0
 
 
-def test_markers_have_one():
-    assert _stamp_place(typestore(), 'visualization_msgs/msg/MarkerArray') > 0
+@pytest.mark.parametrize('keep', [0, 3, 4, 11])
+def test_cut_off_message_has_none(keep):
+    message = stamped_point()
+    data = bytes(STORE.serialize_cdr(message, message.__msgtype__))
+    assert stamp_of(data[:keep], message.__msgtype__) == 0
