@@ -22,7 +22,7 @@ os.environ['ROS_DOMAIN_ID'] = str(1 + zlib.crc32(str(os.getpid()).encode()) % 10
 
 @dataclass(frozen=True, eq=False)
 class Tracked:
-    """All that the motion tracker said of a recording, with what it was asked to do.
+    """Results of the motion tracker for a recording, with its person and task.
 
     Attributes
     ----------
@@ -31,8 +31,6 @@ class Tracked:
         Stamp at which the recording starts [s].
     frames, events, lifts, notices : list
         `TrackedFrame`, `DetectedEvent`, `MeasuredLift` and `Notice` in order.
-    calibrated : Subject
-        The subject as the tracker scaled it.
     filter_delay : float
         Of the live frames [s].
     """
@@ -44,7 +42,6 @@ class Tracked:
     events: list
     lifts: list
     notices: list
-    calibrated: object
     filter_delay: float
 
     def live(self, name):
@@ -54,44 +51,37 @@ class Tracked:
 
 @cache
 def track(bag: Path) -> Tracked:
-    """Drive the motion tracker alone, as the graph does, through a recording."""
+    """Run a recording through the motion tracker alone, as the graph does."""
     from lifting_cli.recording_summary import summarise
-    from lifting_messages.conversions import subject_from_msg
-    from lifting_messages.parameters import defaults
     from lifting_recordings.reader import BagReader
-    from motion_tracker import inputs
     from motion_tracker.core import tracked
-    from motion_tracker.core.configuration import tracker_from
+    from motion_tracker.station import TrackerStation
 
     summary = summarise(bag)
+    station = TrackerStation()
     outputs = []
     with BagReader(bag) as reader:
-        latched = {n.strip('/'): m for n, _, m in reader.messages(['/subject', '/task'])}
-        subject, task = latched['subject'], latched['task']
-        tracker = tracker_from(
-            defaults('motion_tracker'),
-            subject_from_msg(subject),
-            subject.marker_set,
-            *inputs.task_from_msg(task),
-        )
+        entered = {n.strip('/'): m for n, _, m in reader.messages(['/subject', '/task'])}
         names = [name for name in reader.topics if name.strip('/') in summary.inputs]
+        for topic, message in entered.items():
+            outputs += station.track(topic, message)
         for topic, _, message in reader.messages(names):
-            outputs += inputs.push(tracker, topic.strip('/'), message)
-        outputs += tracker.flush()
+            outputs += station.track(topic.strip('/'), message)
+        outputs += station.end()
 
     def of(kind):
         return [output for output in outputs if isinstance(output, kind)]
 
+    frames = of(tracked.TrackedFrame)
     return Tracked(
-        subject,
-        task,
+        entered['subject'],
+        entered['task'],
         summary.start,
-        of(tracked.TrackedFrame),
+        frames,
         of(tracked.DetectedEvent),
         of(tracked.MeasuredLift),
         of(tracked.Notice),
-        tracker.subject,
-        tracker.filter_delay,
+        frames[0].filter_delay,
     )
 
 

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import numpy as np
 
-from human_model.constants import SIDES
 from human_model.subject import Subject
 from human_model.typing import Array
 from injury_monitor.conversions import work_from_msg
@@ -21,9 +20,9 @@ from lifting.exceptions import IncompleteRecordingError
 from lifting_messages import Message
 from lifting_messages.conversions import subject_from_msg
 from lifting_recordings.reader import BagReader
+from motion_tracker.topics import STREAMS
 
-_PLATES = [f'force_plates/{side}/{kind}' for side in SIDES for kind in ('wrench', 'wrench_block')]
-_STREAMS = ('markers', 'box/pose', *_PLATES)
+_STREAMS = {topic.name for topic in STREAMS}
 
 
 @dataclass(frozen=True, eq=False)

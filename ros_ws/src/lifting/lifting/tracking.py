@@ -9,10 +9,8 @@ from dataclasses import dataclass, replace
 from human_model.subject import Subject
 from lifting.lift import Lift
 from lifting.recording import Recording
-from motion_tracker import inputs
-from motion_tracker.core.markers.marker_set import load_marker_set
 from motion_tracker.core.tracked import MeasuredLift, Notice, Output, TrackerSettings
-from motion_tracker.core.tracker import MotionTracker
+from motion_tracker.station import TrackerStation
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,7 +20,6 @@ class Tracking:
     Attributes
     ----------
     subject : Subject
-        With the segment lengths of the tracker.
     lifts : tuple of Lift
         In the order in which they ended.
     notices : tuple of str
@@ -42,22 +39,18 @@ def track(recording: Recording, settings: TrackerSettings | None = None) -> Trac
     MotionTrackerError
         If marker set, masses or samples are refused.
     """
-    name, box = recording.marker_set, recording.box
-    tracker = MotionTracker(
-        recording.subject,
-        load_marker_set(name) if name else None,
-        box.mass,
-        recording.box_size,
-        settings=settings,
-    )
-    outputs: list[Output] = []
+    station, box = TrackerStation(settings=settings), recording.box
+    outputs: list[Output] = [
+        *station.enter_subject(recording.subject, recording.marker_set),
+        *station.enter_task(box.mass, recording.box_size),
+    ]
     for topic, message in recording.samples():
-        outputs += inputs.push(tracker, topic, message)
-    outputs += tracker.flush()
+        outputs += station.track(topic, message)
+    outputs += station.end()
     lifts = tuple(
         Lift.of(
             found.lift,
-            tracker.subject,
+            recording.subject,
             replace(box, mass=found.lift.box_mass),
             recording.work,
             found.status,
@@ -66,4 +59,4 @@ def track(recording: Recording, settings: TrackerSettings | None = None) -> Trac
         if isinstance(found, MeasuredLift)
     )
     notices = (found for found in outputs if isinstance(found, Notice) and not found.information)
-    return Tracking(tracker.subject, lifts, tuple(notice.text for notice in notices))
+    return Tracking(recording.subject, lifts, tuple(notice.text for notice in notices))

@@ -7,29 +7,25 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from human_model.exceptions import HumanModelError
+from human_model.exceptions import LiftingError
 from human_model.subject import Subject
 from lifting_cli.graph_errors import SessionError
 from lifting_cli.recording_summary import summarise
 from lifting_messages.conversions import subject_from_msg
-from lifting_messages.parameters import defaults
 from lifting_recordings.reader import BagReader
-from motion_tracker import inputs
-from motion_tracker.core.configuration import tracker_from
-from motion_tracker.core.exceptions import MotionTrackerError
-from motion_tracker.core.tracked import MeasuredLift
+from motion_tracker.core.tracked import MeasuredLift, Output
+from motion_tracker.station import TrackerStation
 
 
 @dataclass(frozen=True)
 class RecordedLifts:
-    """What the tracker found in a recording.
+    """Lifts that the tracker finds in a recording.
 
     Attributes
     ----------
     start : float
         Stamp at which the recording starts [s].
     subject : Subject
-        As the tracker scaled it.
     lifts : tuple of MeasuredLift
         In the order in which they ended.
     """
@@ -56,25 +52,21 @@ def recorded_lifts(bag: Path) -> RecordedLifts:
         If subject or task are missing, or the tracker refuses what it holds.
     """
     summary = summarise(bag)
+    station = TrackerStation()
+    outputs: list[Output] = []
     with BagReader(bag) as reader:
-        latched = {n.strip('/'): m for n, _, m in reader.messages(['/subject', '/task'])}
-        if missing := {'subject', 'task'} - latched.keys():
+        entered = {n.strip('/'): m for n, _, m in reader.messages(['/subject', '/task'])}
+        if missing := {'subject', 'task'} - entered.keys():
             raise SessionError(f'{bag}: nothing in topic {sorted(missing)[0]!r}')
+        names = [name for name in reader.topics if name.strip('/') in summary.inputs]
         try:
-            tracker = tracker_from(
-                defaults('motion_tracker'),
-                subject_from_msg(latched['subject']),
-                latched['subject'].marker_set,
-                *inputs.task_from_msg(latched['task']),
-            )
-            names = [name for name in reader.topics if name.strip('/') in summary.inputs]
-            outputs = [
-                output
-                for topic, _, message in reader.messages(names)
-                for output in inputs.push(tracker, topic.strip('/'), message)
-            ]
-            outputs += tracker.flush()
-        except (MotionTrackerError, HumanModelError) as error:
+            for topic, message in entered.items():
+                outputs += station.track(topic, message)
+            for topic, _, message in reader.messages(names):
+                outputs += station.track(topic.strip('/'), message)
+            outputs += station.end()
+            subject = subject_from_msg(entered['subject'])
+        except LiftingError as error:
             raise SessionError(f'{bag}: {error}') from error
     found = tuple(output for output in outputs if isinstance(output, MeasuredLift))
-    return RecordedLifts(summary.start, tracker.subject, found)
+    return RecordedLifts(summary.start, subject, found)

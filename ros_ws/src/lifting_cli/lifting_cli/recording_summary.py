@@ -8,12 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from injury_monitor.core.limits import limits_for
-from lifting_messages.plate_blocks import block_topic
 from lifting_recordings.reader import BagReader
+from motion_tracker.topics import STREAMS
 
-PLATES = tuple(f'force_plates/{side}/wrench' for side in ('right', 'left'))
-#: Topics the motion tracker reads.
-INPUTS = ('markers', 'box/pose', *PLATES, *map(block_topic, PLATES))
+#: Topics with samples for the motion tracker.
+INPUTS = tuple(topic.name for topic in STREAMS)
 
 #: Said when a recording ends without a lift.
 NO_LIFT = 'no lift found: nothing rose as motion_tracker asks for'

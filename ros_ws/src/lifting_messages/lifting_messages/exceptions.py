@@ -50,3 +50,17 @@ class MessageError(LiftingMessagesError):
         self.name = name
         self.size = size
         self.problem = problem
+
+
+class TopicError(LiftingMessagesError):
+    """A message of a topic that is no input of a package.
+
+    Attributes
+    ----------
+    package, topic : str
+    """
+
+    def __init__(self, package: str, topic: str) -> None:
+        super().__init__(f'{topic}: {package} has no such input')
+        self.package = package
+        self.topic = topic

@@ -29,13 +29,12 @@ from sensor_msgs.msg import JointState  # noqa: E402
 from std_srvs.srv import Trigger  # noqa: E402
 
 from human_model.report import SolveStatus  # noqa: E402
-from lifting_messages.conversions import lift_from_msg, subject_from_msg  # noqa: E402
+from lifting_messages.conversions import lift_from_msg  # noqa: E402
 from lifting_node import qos  # noqa: E402
-from motion_tracker import inputs  # noqa: E402
-from motion_tracker.core.configuration import tracker_from  # noqa: E402
 from motion_tracker.core.tracked import MeasuredLift as TrackedLift  # noqa: E402
 from motion_tracker.core.tracked import TrackedFrame  # noqa: E402
 from motion_tracker.motion_tracker_node import MotionTrackerNode  # noqa: E402
+from motion_tracker.station import TrackerStation  # noqa: E402
 
 BAG = Path(__file__).resolve().parents[4] / 'bags' / 'symmetric_7kg'
 PATIENCE = 60.0
@@ -127,19 +126,10 @@ def station(request, monkeypatch):
 
 
 def offline(recording, values):
-    """Return the outputs of the core on the same messages."""
-    messages = dict(recording[:2])
-    subject = messages['subject']
-    tracker = tracker_from(
-        values,
-        subject_from_msg(subject),
-        subject.marker_set,
-        *inputs.task_from_msg(messages['task']),
-    )
-    outputs = []
-    for topic, message in recording[2:]:
-        outputs += inputs.push(tracker, topic, message)
-    return outputs + tracker.flush()
+    """Return the results of the station alone for the same messages."""
+    station = TrackerStation(values)
+    outputs = [output for topic, message in recording for output in station.track(topic, message)]
+    return [*outputs, *station.end()]
 
 
 def test_a_recording_over_topics_gives_what_the_core_gives(station, recording):

@@ -43,6 +43,7 @@ def tracker_from(
     box_size: npt.ArrayLike,
     first_lift: int = 1,
     clock: Callable[[], float] | None = None,
+    settings: TrackerSettings | None = None,
 ) -> MotionTracker:
     """Tracker of one recording.
 
@@ -56,6 +57,8 @@ def tracker_from(
         Number of the first lift.
     clock
         Time now [s], for live streams; None when reading files.
+    settings
+        Replace those of ``values``.
 
     Raises
     ------
@@ -73,7 +76,7 @@ def tracker_from(
         box_mass,
         box_size,
         plates,
-        settings_from(values),
+        settings_from(values) if settings is None else settings,
         first_lift,
         clock,
     )
