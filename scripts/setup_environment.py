@@ -29,6 +29,8 @@ SOURCES = ROOT / 'ros_ws' / 'src'
 INTERFACES = SOURCES / 'lifting_interfaces'
 #: The message of /tf, which PyPI lacks and a full ROS 2 has.
 TF_MESSAGE = SCRIPTS / 'interfaces_for_wheels' / 'tf2_msgs'
+#: Markers of mocap4r2, whose users have them; here for the test of the adapter.
+MOCAP_MESSAGES = SCRIPTS / 'interfaces_for_wheels' / 'mocap4r2_msgs'
 RUNTIME_LOCKS = [REQUIREMENTS / f'{name}.txt' for name in ('runtime', 'build', 'model')]
 DEV_LOCK = REQUIREMENTS / 'dev.txt'
 
@@ -131,6 +133,12 @@ def build_tf_message() -> None:
     run(VENV / 'bin' / 'python', '-c', 'import tf2_msgs.msg')
 
 
+def build_mocap_messages() -> None:
+    """Build the markers of mocap4r2."""
+    say('building the markers of mocap4r2 (ten seconds)')
+    interfaces.build(MOCAP_MESSAGES, ROOT / 'build' / MOCAP_MESSAGES.name, VENV)
+
+
 def interface_digest(package: Path, runtime: str) -> str:
     """Return the digest of all that an interface package is built from."""
     files = [path for folder in ('msg', 'srv', 'action') for path in (package / folder).glob('*')]
@@ -225,7 +233,9 @@ def set_up(dev: bool) -> None:
         ('workspace', digest([Path(__file__)], runtime, *names), install_workspace),
     ]
     if dev:
+        mocap = interface_digest(MOCAP_MESSAGES, runtime)
         steps.append(('dev', digest([DEV_LOCK], runtime), install_dev))
+        steps.append(('mocap4r2_msgs', mocap, build_mocap_messages))
     else:
         # Tests compile what they need; code that is being changed must not stop the set-up.
         steps.append(('compiled functions', compiled_functions(runtime).value, compile_functions))

@@ -81,7 +81,7 @@ ROSDEP_KEYS = {
 # Imported module -> wheel, where the names differ. lz4 and backports.zstd come with rosbags.
 WHEELS = {'backports': 'rosbags', 'lz4': 'rosbags', 'yaml': 'pyyaml'}
 # muscle_analyzer's script for OpenSim runs in OpenSim's own environment (make opensim).
-OTHER_ENVIRONMENT = {'opensim'}
+OTHER_ENVIRONMENT = {'opensim', 'mocap4r2_msgs'}
 # Of the extra `ros`, or of a ROS 2 installation; beside the packages of messages.
 FROM_ROS = {
     'ament_index_python',

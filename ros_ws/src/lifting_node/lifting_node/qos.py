@@ -23,9 +23,13 @@ VIEW_DEPTH = 10
 TRANSFORM_DEPTH = 100
 
 
-def _profile(depth: int, durability: DurabilityPolicy) -> QoSProfile:
+def _profile(
+    depth: int,
+    durability: DurabilityPolicy,
+    reliability: ReliabilityPolicy = ReliabilityPolicy.RELIABLE,
+) -> QoSProfile:
     return QoSProfile(
-        reliability=ReliabilityPolicy.RELIABLE,
+        reliability=reliability,
         durability=durability,
         history=HistoryPolicy.KEEP_LAST,
         depth=depth,
@@ -44,3 +48,5 @@ RESULTS = _profile(LIFT_DEPTH, DurabilityPolicy.TRANSIENT_LOCAL)
 VIEW = _profile(VIEW_DEPTH, DurabilityPolicy.VOLATILE)
 #: /tf, as the broadcasters of ROS 2 offer it.
 TRANSFORMS = _profile(TRANSFORM_DEPTH, DurabilityPolicy.VOLATILE)
+#: Streams of drivers of others, which may be best effort: a reliable reader would get nothing.
+DRIVER = _profile(FRAME_DEPTH, DurabilityPolicy.VOLATILE, ReliabilityPolicy.BEST_EFFORT)
