@@ -16,6 +16,7 @@ from typing import Final
 
 import numpy as np
 
+from human_model.opensim_storage import read_storage
 from lifting_cli.recorded_lifts import recorded_lifts
 from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
 from muscle_analyzer.core.multibody.model import compile_model
@@ -23,7 +24,6 @@ from muscle_analyzer.core.opensim_bridge.derivatives import smooth
 from muscle_analyzer.core.opensim_bridge.export import read_coordinates
 from muscle_analyzer.core.opensim_bridge.motion_on_model import MotionOnModel, motion_on_model
 from muscle_analyzer.core.opensim_bridge.setup_files import PointForce
-from muscle_analyzer.core.opensim_bridge.storage import read_storage
 from muscle_analyzer.core.osim.reader import read_osim
 
 ROOT: Final = Path(__file__).resolve().parents[1]

@@ -18,8 +18,9 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
+from lifting.importing import import_recording
 from lifting_cli.offline import run_offline
-from lifting_recordings.importer import ImportOptions, import_recording
+from lifting_recordings.importer import ImportOptions
 from lifting_recordings.reader import BagReader
 from muscle_analyzer.core.loads.disc_frame import (
     DiscOption,

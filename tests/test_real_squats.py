@@ -13,7 +13,8 @@ import pytest
 
 from human_model.frames import matrix_from_quaternion
 from human_model.skeletons import Skeleton3D
-from lifting_recordings.importer import ImportOptions, import_recording
+from lifting.importing import import_recording
+from lifting_recordings.importer import ImportOptions
 from motion_tracker.core.filters import derivatives, zero_phase
 from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
 

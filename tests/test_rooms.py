@@ -1,11 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Who may import whom (docs/architecture.md)."""
+"""Dependency order of packages and modules (docs/architecture.md)."""
 
 from __future__ import annotations
 
 import ast
 import importlib
+import re
 import subprocess
 import sys
 from collections.abc import Container
@@ -14,39 +15,26 @@ from pathlib import Path
 
 import pytest
 
-SOURCES = Path(__file__).resolve().parents[1] / 'ros_ws' / 'src'
-MAY_IMPORT = {
-    'human_model': set(),
-    'lifting_messages': {'human_model'},
-    'lifting_node': {'human_model', 'lifting_messages'},
-    'motion_tracker': {'human_model', 'lifting_messages', 'lifting_node'},
-    'lift_predictor': {'human_model', 'lifting_messages', 'lifting_node'},
-    'muscle_analyzer': {'human_model', 'lifting_messages', 'lifting_node'},
-    'injury_monitor': {'human_model', 'lifting_messages', 'lifting_node'},
-    'lifting_visualization': {'human_model', 'lifting_messages', 'lifting_node'},
-    'lifting_recordings': {'human_model', 'lifting_messages', 'motion_tracker', 'muscle_analyzer'},
-    'lifting_report': {
-        'human_model',
-        'lifting_messages',
-        'lifting_node',
-        'lifting_recordings',
-        'lift_predictor',
-        'muscle_analyzer',
-        'injury_monitor',
-    },
-    'lifting': {
-        'human_model',
-        'lifting_messages',
-        'lifting_recordings',
-        'motion_tracker',
-        'lift_predictor',
-        'muscle_analyzer',
-        'injury_monitor',
-    },
-}
+ROOT = Path(__file__).resolve().parents[1]
+SOURCES = ROOT / 'ros_ws' / 'src'
 #: Modules in a folder, apart from `__init__`.
 MOST_MODULES = 25
 ROS = {'rclpy', 'lifting_interfaces', 'lifting_node', 'launch', 'launch_ros'}
+
+
+def package_table() -> dict[str, set[str]]:
+    """Return the packages of docs/architecture.md in their order, with those they may import."""
+    text = (ROOT / 'docs' / 'architecture.md').read_text(encoding='utf-8')
+    rows = [line.split('|')[1:4] for line in text.splitlines() if line.startswith('| `')]
+    return {
+        name: set(re.findall(r'`(\w+)`', allowed))
+        for names, _, allowed in rows
+        for name in re.findall(r'`(\w+)`', names)
+    }
+
+
+MAY_IMPORT = package_table()
+PYTHON_PACKAGES = [name for name in MAY_IMPORT if (SOURCES / name / name).is_dir()]
 
 
 def imported(path: Path) -> set[str]:
@@ -60,13 +48,19 @@ def imported(path: Path) -> set[str]:
     return found
 
 
-@pytest.mark.parametrize('package', MAY_IMPORT)
-def test_a_room_imports_only_what_it_may(package: str) -> None:
+def test_table_of_packages_is_in_dependency_order() -> None:
+    assert set(MAY_IMPORT) == {path.parent.name for path in SOURCES.glob('*/package.xml')}
+    order = list(MAY_IMPORT)
+    for name, allowed in MAY_IMPORT.items():
+        assert allowed <= set(order[: order.index(name)]), f'{name} may import a higher package'
+
+
+@pytest.mark.parametrize('package', PYTHON_PACKAGES)
+def test_package_imports_only_what_it_may(package: str) -> None:
     files = list((SOURCES / package / package).rglob('*.py'))
     assert files
-    own = {*MAY_IMPORT, 'lifting_cli'} - {package}
     for path in files:
-        wrong = imported(path) & own - MAY_IMPORT[package]
+        wrong = imported(path) & set(MAY_IMPORT) - MAY_IMPORT[package] - {package}
         assert not wrong, f'{path.relative_to(SOURCES)} imports {sorted(wrong)}'
 
 
@@ -77,10 +71,10 @@ def test_a_room_imports_only_what_it_may(package: str) -> None:
         'lifting_messages/lifting_messages',
         'lifting_recordings/lifting_recordings',
         'lifting/lifting',
-        *(f'{p}/{p}/core' for p in MAY_IMPORT if (SOURCES / p / p / 'core').is_dir()),
+        *(f'{p}/{p}/core' for p in PYTHON_PACKAGES if (SOURCES / p / p / 'core').is_dir()),
     ],
 )
-def test_cores_know_no_ros(folder: str) -> None:
+def test_cores_import_no_ros(folder: str) -> None:
     files = list((SOURCES / folder).rglob('*.py'))
     assert files
     for path in files:
@@ -95,13 +89,15 @@ def module_name(path: Path) -> str:
 
 
 def imported_modules(path: Path, modules: Container[str]) -> set[str]:
-    """Return the modules of the project that a module imports when it is itself imported."""
+    """Return the modules of the project that a module imports, anywhere in its file."""
     found = set()
-    for node in ast.parse(path.read_text(encoding='utf-8')).body:
+    for node in ast.walk(ast.parse(path.read_text(encoding='utf-8'))):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module:
-            found |= {node.module, *(f'{node.module}.{alias.name}' for alias in node.names)}
+            names = {f'{node.module}.{alias.name}' for alias in node.names}
+            inner = {name for name in names if name in modules}
+            found |= inner if inner == names else {node.module, *inner}
     return {name for name in found if name in modules}
 
 
@@ -109,13 +105,14 @@ def project_imports() -> dict[str, set[str]]:
     """Return the imports of every module of the packages."""
     paths = {
         module_name(path): path
-        for package in (*MAY_IMPORT, 'lifting_cli')
+        for package in PYTHON_PACKAGES
         for path in (SOURCES / package / package).rglob('*.py')
     }
     return {name: imported_modules(path, paths) - {name} for name, path in paths.items()}
 
 
 def test_no_import_circle() -> None:
+    """Imports in functions and for type checkers count as well."""
     try:
         TopologicalSorter(project_imports()).prepare()
     except CycleError as error:

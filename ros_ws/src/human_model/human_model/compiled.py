@@ -4,9 +4,8 @@
 
 All functions are numba functions and can be called from other packages' numba code. World axes
 are REP-103; bodies and segments are defined in `tree`. The algorithm is recursive Newton-Euler;
-`recursive` holds the thesis' Lagrangian recursion over the Denavit-Hartenberg rows, and the tests
-hold both to the same numbers. The small functions add into their first argument, so the loops
-over bodies allocate nothing.
+the tests compare it with the Lagrangian recursion of the thesis over the Denavit-Hartenberg rows.
+The small functions add into their first argument, so the loops over bodies allocate nothing.
 """
 
 import numpy as np

@@ -60,3 +60,33 @@ class TableError(HumanModelError):
 
 class FieldError(HumanModelError):
     """A field of a file is missing, unknown or has a wrong value."""
+
+
+class StorageError(HumanModelError):
+    """An OpenSim table over time cannot be read or written; names file, line and column.
+
+    Parameters
+    ----------
+    path : object
+        The file, or the table's name.
+    problem : str
+        What is wrong, with the offending value.
+    line : int, optional
+        1-based line number.
+    column : str, optional
+        Label of the column.
+    """
+
+    def __init__(
+        self, path: object, problem: str, *, line: int | None = None, column: str | None = None
+    ) -> None:
+        where = f'{path}'
+        if line is not None:
+            where += f', line {line}'
+        if column is not None:
+            where += f', column {column!r}'
+        super().__init__(f'{where}: {problem}')
+        self.path = path
+        self.problem = problem
+        self.line = line
+        self.column = column

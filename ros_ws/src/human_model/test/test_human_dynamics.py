@@ -4,13 +4,13 @@
 
 import numpy as np
 import pytest
+from lagrangian_recursion import augmented_inertia, forward_kinematics, recursive_dynamics
 
 from human_model import compiled
 from human_model.anthropometry import SegmentParameters
 from human_model.compiled_blocks import outer_force
 from human_model.constants import GRAVITY
 from human_model.exceptions import ChainError
-from human_model.recursive import augmented_inertia, forward_kinematics, recursive_dynamics
 from human_model.skeleton import ExternalForce
 from human_model.skeletons import Skeleton2D
 from human_model.tree import build_tree

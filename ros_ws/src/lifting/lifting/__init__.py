@@ -29,16 +29,21 @@ if TYPE_CHECKING:
     from lift_predictor.core.problem.task import Box
     from lifting.assessment import assess
     from lifting.exceptions import IncompleteLiftError, IncompleteRecordingError, NoSolutionError
+    from lifting.importing import import_recording
     from lifting.lift import Lift
     from lifting.loads import Loads, analyze
     from lifting.prediction import Prediction, maximum_weight, predict
     from lifting.recording import Recording, load_recording
     from lifting.tracking import Tracking, track
+    from lifting_recordings.alignment import ConventionOptions
+    from lifting_recordings.importer import ImportOptions
 
 __all__ = [
     'BodyMotion',
     'Box',
+    'ConventionOptions',
     'Coupling',
+    'ImportOptions',
     'IncompleteLiftError',
     'IncompleteRecordingError',
     'Lift',
@@ -55,6 +60,7 @@ __all__ = [
     '__version__',
     'analyze',
     'assess',
+    'import_recording',
     'lifting_equation',
     'load_recording',
     'maximum_weight',
@@ -66,7 +72,9 @@ __all__ = [
 _MODULES = {
     'BodyMotion': 'human_model.motion',
     'Box': 'lift_predictor.core.problem.task',
+    'ConventionOptions': 'lifting_recordings.alignment',
     'Coupling': 'injury_monitor.core.lifting_equation',
+    'ImportOptions': 'lifting_recordings.importer',
     'IncompleteLiftError': 'lifting.exceptions',
     'IncompleteRecordingError': 'lifting.exceptions',
     'Lift': 'lifting.lift',
@@ -82,6 +90,7 @@ _MODULES = {
     'Work': 'injury_monitor.core.work',
     'analyze': 'lifting.loads',
     'assess': 'lifting.assessment',
+    'import_recording': 'lifting.importing',
     'lifting_equation': 'injury_monitor.core.lifting_equation',
     'load_recording': 'lifting.recording',
     'maximum_weight': 'lifting.prediction',

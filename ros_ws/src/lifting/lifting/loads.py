@@ -108,7 +108,8 @@ class Loads:
         """Draw the L5-S1 load with the limits; return the Matplotlib figure."""
         from lifting.plots import plot_spine_load
 
-        return plot_spine_load(self)
+        lifts_per_day = self.lift.work.lifts_per_day if self.lift and self.lift.work else 0.0
+        return plot_spine_load(self.analysis, lifts_per_day)
 
 
 def analyze(

@@ -4,33 +4,27 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from matplotlib.figure import Figure
 
 from injury_monitor.core.limits import limits_for
-
-if TYPE_CHECKING:
-    from lifting.loads import Loads
+from muscle_analyzer.core.loads.analysis import MuscleAnalysis
 
 
-def plot_spine_load(load: Loads) -> Figure:
+def plot_spine_load(analysis: MuscleAnalysis, lifts_per_day: float) -> Figure:
     """Draw compression and anterior shear of L5-S1 with the limits in force.
 
     Samples without a solution leave a gap. The figure belongs to no window:
     `figure.savefig(path)` writes it, a notebook shows it.
     """
-    spine = load.l5_s1
-    work = load.lift.work if load.lift is not None else None
-    limits = limits_for(0.0 if work is None else work.lifts_per_day)
+    limits = limits_for(lifts_per_day)
     figure = Figure(figsize=(7.0, 4.0), layout='constrained')
     axes = figure.subplots()
-    time = spine.time - spine.time[0]
-    good = spine.status == 0
+    time = analysis.time - analysis.time[0]
+    good = analysis.spine_status == 0
     series = (
-        ('compression', spine.compression, limits.compression_action.value, 'tab:blue'),
-        ('anterior shear', spine.anterior_shear, limits.shear.value, 'tab:orange'),
+        ('compression', analysis.compression, limits.compression_action.value, 'tab:blue'),
+        ('anterior shear', analysis.anterior_shear, limits.shear.value, 'tab:orange'),
     )
     for name, values, limit, colour in series:
         axes.plot(time, np.where(good, values, np.nan), color=colour, label=name)

@@ -71,8 +71,9 @@ def _plates(entries: Sequence[str]) -> dict[str, str]:
 
 
 def _import(options: argparse.Namespace) -> int:
+    from lifting.importing import import_recording
     from lifting_recordings.alignment import ConventionOptions
-    from lifting_recordings.importer import ImportOptions, import_recording
+    from lifting_recordings.importer import ImportOptions
 
     report = import_recording(
         ImportOptions(

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from human_model.opensim_storage import read_storage
 from lifting_cli import compare_opensim as module
 from lifting_cli.cli import main
 from lifting_cli.compare_opensim import CompareOptions, compare_opensim, table
@@ -18,7 +19,6 @@ from muscle_analyzer.core.exceptions import OpenSimError
 from muscle_analyzer.core.opensim_bridge import setup_files as files
 from muscle_analyzer.core.opensim_bridge.compare import Comparison, Difference, Instant
 from muscle_analyzer.core.opensim_bridge.process import find_opensim
-from muscle_analyzer.core.opensim_bridge.storage import read_storage
 
 BAG = Path(__file__).resolve().parents[4] / 'bags' / 'symmetric_7kg'
 

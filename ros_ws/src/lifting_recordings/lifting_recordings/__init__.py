@@ -19,7 +19,12 @@ if TYPE_CHECKING:
     from lifting_recordings.alignment import ConventionOptions
     from lifting_recordings.bag_writer import BagWriter
     from lifting_recordings.exceptions import BagError
-    from lifting_recordings.importer import ImportOptions, import_recording
+    from lifting_recordings.importer import (
+        ImportOptions,
+        ReadRecording,
+        read_recording,
+        write_bag,
+    )
     from lifting_recordings.reader import BagReader
     from lifting_recordings.recording import Plate, Recording
     from lifting_recordings.subject_file import SubjectFile, read_subject_file
@@ -31,10 +36,12 @@ __all__ = [
     'ConventionOptions',
     'ImportOptions',
     'Plate',
+    'ReadRecording',
     'Recording',
     'SubjectFile',
-    'import_recording',
+    'read_recording',
     'read_subject_file',
+    'write_bag',
 ]
 
 _MODULES = {
@@ -44,10 +51,12 @@ _MODULES = {
     'ConventionOptions': 'alignment',
     'ImportOptions': 'importer',
     'Plate': 'recording',
+    'ReadRecording': 'importer',
     'Recording': 'recording',
     'SubjectFile': 'subject_file',
-    'import_recording': 'importer',
+    'read_recording': 'importer',
     'read_subject_file': 'subject_file',
+    'write_bag': 'importer',
 }
 
 

@@ -1,6 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""`lift import`: C3D, or TRC with MOT or STO, and a subject file become one bag.
+"""C3D, or TRC with MOT or STO, and a subject file become one bag.
+
+`lifting.import_recording` is the whole import: between reading and writing it calibrates the
+markers and registers the plates, for which it needs the packages of the computation.
 
 Topics: `markers`, `force_plates/{right,left}/wrench` (force of the ground on the person, moment
 about the laboratory origin, frame `world`), `box/pose` when box markers are named, `emg` where
@@ -28,20 +31,14 @@ from lifting_recordings.opensim_forces import read_trc_and_forces
 from lifting_recordings.plate_assignment import Carried
 from lifting_recordings.raw_markers import without_zeros
 from lifting_recordings.recording import Analog, Plate, RawRecording, Recording
-from lifting_recordings.static_trial import calibrate_markers
-from lifting_recordings.subject_file import (
-    QUIET_STANDING,
-    SubjectFile,
-    TaskEntry,
-    read_subject_file,
-)
+from lifting_recordings.subject_file import SubjectFile, TaskEntry, read_subject_file
 
 _EMG_BLOCK_SECONDS = 0.01
 
 
 @dataclass(frozen=True)
 class ImportOptions:
-    """What to import and how.
+    """Files and settings of an import.
 
     Attributes
     ----------
@@ -56,7 +53,7 @@ class ImportOptions:
     static : Path or None
         Static trial (C3D or TRC) for the calibration of the marker set.
     conventions : ConventionOptions
-        Settles what the data do not.
+        For conventions that the data leave open.
     start_time_ns : int
         Stamp of time zero of the file [ns].
     compress : bool
@@ -76,9 +73,31 @@ class ImportOptions:
     label_prefix: str | None = None
 
 
+@dataclass(frozen=True, eq=False)
+class ReadRecording:
+    """A recording as it was read, in the conventions of the graph.
+
+    Attributes
+    ----------
+    entry : SubjectFile
+        Person, task and marker set.
+    recording : Recording
+        The lifts.
+    static_trial : Recording or None
+        Quiet standing for the calibration of the markers; without force plates.
+    calibration : MarkerCalibration or None
+        Result of the static trial.
+    """
+
+    entry: SubjectFile
+    recording: Recording
+    static_trial: Recording | None = None
+    calibration: MarkerCalibration | None = None
+
+
 @dataclass(frozen=True)
 class ImportReport:
-    """What was imported.
+    """Result of an import.
 
     Attributes
     ----------
@@ -130,7 +149,7 @@ def read_raw(
 
 
 def rename_markers(raw: RawRecording, entry: SubjectFile) -> RawRecording:
-    """Give the markers the names of the marker set (`recording.rename`)."""
+    """Return the recording with the marker names of the marker set (`recording.rename`)."""
     rename = entry.recording.rename
     unknown = [name for name in rename if name not in raw.names]
     if unknown:
@@ -143,8 +162,8 @@ def rename_markers(raw: RawRecording, entry: SubjectFile) -> RawRecording:
     return replace(raw, names=names)
 
 
-def import_recording(options: ImportOptions) -> ImportReport:
-    """Turn a recording into a bag; nothing is written if anything is wrong.
+def read_recording(options: ImportOptions) -> ReadRecording:
+    """Read the files, bring them into the conventions of the graph and check them.
 
     Raises
     ------
@@ -154,43 +173,33 @@ def import_recording(options: ImportOptions) -> ImportReport:
     entry = read_subject_file(options.subject)
     if options.output.exists():
         raise BagError(f'{options.output} exists already; it is not overwritten')
+    person = entry.subject
+    carried = Carried(person.mass, entry.task.box_mass, tuple(entry.recording.box_markers))
+
+    def aligned(raw: RawRecording, conventions: ConventionOptions) -> Recording:
+        return align(
+            rename_markers(raw, entry),
+            person.stature,
+            carried,
+            conventions,
+            entry.recording.roles,
+        )
+
     raw = read_raw(options.markers, options.forces, entry.recording.emg, options.label_prefix)
     if raw.time.size < 2:
         raise FileFormatError(options.markers, 'holds one frame; a recording needs two or more')
-    raw = rename_markers(raw, entry)
-    subject = entry.subject
-    carried = Carried(subject.mass, entry.task.box_mass, tuple(entry.recording.box_markers))
-    recording = align(raw, subject.stature, carried, options.conventions, entry.recording.roles)
-    calibration: MarkerCalibration | None = None
-    said: tuple[str, ...] = ()
-    if options.static is not None:
-        still = read_raw(options.static, None, (), options.label_prefix)
-        still = rename_markers(still, entry)
-        # The conventions of the static trial are detected anew: it may be another file kind.
-        trial = align(
-            replace(still, plates=()),
-            subject.stature,
-            carried,
-            replace(options.conventions, plates={}),
-            entry.recording.roles,
-        )
-        calibration, said = calibrate_markers(trial, entry)
-    recording = replace(recording, statements=(*recording.statements, *said))
-    if entry.recording.plate_registration == QUIET_STANDING:
-        # The models it asks take a second or two to load.
-        from lifting_recordings.plate_registration import register_plates
-
-        recording = register_plates(recording, entry, calibration)
-    return write_bag(options, entry, recording, calibration)
+    recording = aligned(raw, options.conventions)
+    if options.static is None:
+        return ReadRecording(entry, recording)
+    still = read_raw(options.static, None, (), options.label_prefix)
+    # The conventions of the static trial are detected anew: it may be another file kind.
+    trial = aligned(replace(still, plates=()), replace(options.conventions, plates={}))
+    return ReadRecording(entry, recording, trial)
 
 
-def write_bag(
-    options: ImportOptions,
-    entry: SubjectFile,
-    recording: Recording,
-    calibration: MarkerCalibration | None,
-) -> ImportReport:
-    """Write an aligned recording to `options.output`."""
+def write_bag(options: ImportOptions, read: ReadRecording) -> ImportReport:
+    """Write a recording to `options.output`."""
+    entry, recording = read.entry, read.recording
     counts: dict[str, int] = {}
     origin_ns = options.start_time_ns - round(recording.time[0] * 1e9)
     source = ' '.join((f'Imported from {recording.path.name}.', *recording.statements))
@@ -200,7 +209,7 @@ def write_bag(
         else (None, None)
     )
     with BagWriter(options.output, compress=options.compress) as writer:
-        streams = [_latched(writer, options.start_time_ns, entry, source, calibration)]
+        streams = [_latched(writer, options.start_time_ns, entry, source, read.calibration)]
         streams.append(marker_stream(writer, origin_ns, recording))
         streams += [
             plate_stream(writer, origin_ns, side, recording.plates[side])

@@ -3,7 +3,7 @@
 """Readers of OpenSim's TRC, MOT and STO files, and a writer of TRC.
 
 Format as described in OpenSim's user guide, "Marker (.trc) Files"; MOT and STO are read by
-`muscle_analyzer.core.opensim_bridge.storage`.
+`human_model.opensim_storage`.
 A TRC file is read as OpenSim reads it; what is untidy and harmless is noted. An unsorted stamp, a
 missing cell or a word where a number belongs is an error that names file, line and field.
 """
@@ -17,12 +17,12 @@ from pathlib import Path
 
 import numpy as np
 
+from human_model import opensim_storage
+from human_model.exceptions import StorageError
+from human_model.opensim_storage import Storage
 from human_model.typing import Array
 from lifting_recordings.exceptions import FileFormatError
 from lifting_recordings.raw_markers import select_labels
-from muscle_analyzer.core.exceptions import StorageError
-from muscle_analyzer.core.opensim_bridge import storage
-from muscle_analyzer.core.opensim_bridge.storage import Storage
 
 _TRC_LEADING_COLUMNS = 2
 #: Line of the labels, after file type, keys and entries; the line of the axes follows.
@@ -268,6 +268,6 @@ def read_storage(path: str | Path) -> Storage:
         Foreign, truncated or inconsistent file.
     """
     try:
-        return storage.read_storage(Path(path))
+        return opensim_storage.read_storage(Path(path))
     except StorageError as error:
         raise FileFormatError(path, error.problem, line=error.line, field=error.column) from error

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
+from human_model.opensim_storage import Storage
 from lifting_recordings.exceptions import FileFormatError
 from lifting_recordings.opensim_files import read_storage, read_trc
 from lifting_recordings.recording import Plate, RawRecording
-from muscle_analyzer.core.opensim_bridge.storage import Storage
 
 # Both namings in use: ground_force_1_vx / ground_force_1_mx and 1_ground_force_vx /
 # 1_ground_torque_x (OpenSim user guide, "External loads").

@@ -9,7 +9,7 @@ import pytest
 from lifting_recordings.alignment import ConventionOptions, align
 from lifting_recordings.c3d_files import read_c3d
 from lifting_recordings.exceptions import FileFormatError
-from lifting_recordings.importer import ImportOptions, import_recording
+from lifting_recordings.importer import ImportOptions, read_recording, write_bag
 from lifting_recordings.plate_assignment import Carried
 from lifting_recordings.reader import BagReader
 
@@ -19,6 +19,11 @@ CORNERS = {
     'fp1': [(200, -10, 0), (200, -410, 0), (-200, -410, 0), (-200, -10, 0)],
     'fp2': [(200, 410, 0), (200, 10, 0), (-200, 10, 0), (-200, 410, 0)],
 }
+
+
+def import_recording(options):
+    """Import without the steps of `lifting.import_recording` that need other packages."""
+    return write_bag(options, read_recording(options))
 
 
 def plate_axes(corners: np.ndarray) -> np.ndarray:

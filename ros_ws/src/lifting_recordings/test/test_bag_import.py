@@ -3,24 +3,26 @@
 """Import from files to a bag that stands alone, and back out of the bag."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from rosbags.interfaces import QosDurability
 
+from human_model.opensim_storage import Storage, write_storage
 from lifting_messages.names import split
 from lifting_recordings.bag_writer import START_TIME_NS
 from lifting_recordings.exceptions import BagError, FileFormatError, SubjectFileError
-from lifting_recordings.importer import ImportOptions, import_recording
+from lifting_recordings.importer import ImportOptions, read_recording, write_bag
 from lifting_recordings.opensim_files import MarkerTable, write_trc
 from lifting_recordings.reader import BagReader
-from muscle_analyzer.core.opensim_bridge.storage import Storage, write_storage
 
-ROOT = Path(__file__).resolve().parents[4]
-SQUATS = ROOT.parent / 'shared' / 'data' / 'squats_bodyweight'
 # Rows: axes of an OpenSim file (x forward, y up, z right) in graph axes.
 OPENSIM = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+
+
+def import_recording(options):
+    """Import without the steps of `lifting.import_recording` that need other packages."""
+    return write_bag(options, read_recording(options))
 
 
 @pytest.fixture
@@ -170,30 +172,3 @@ def test_box_pose_from_box_markers(standing, tmp_path, files):
     p, q = message.pose.position, message.pose.orientation
     np.testing.assert_allclose((p.x, p.y, p.z), box, atol=1e-6)
     np.testing.assert_allclose(abs(2.0 * np.arctan2(q.z, q.w)), yaw, atol=1e-6)
-
-
-@pytest.mark.skipif(not SQUATS.is_dir(), reason=f'the real recording is not at {SQUATS}')
-def test_real_squats_import_with_one_call(tmp_path):
-    report = import_recording(
-        ImportOptions(
-            markers=SQUATS / 'squats1.trc',
-            forces=SQUATS / 'squats1_grf.mot',
-            static=SQUATS / 'static1.trc',
-            subject=ROOT / 'bags' / 'subjects' / 'squats_bodyweight.yaml',
-            output=tmp_path / 'squats',
-        )
-    )
-    assert report.messages['markers'] == 1346
-    said = ' '.join(report.statements)
-    assert 'ground_force_1: right foot' in said
-    assert 'ground_force_2: left foot' in said
-    assert '60.1 kg' in said
-    assert 'Both plates were moved by +21 mm forward and +3 mm to the left' in said
-    with BagReader(report.bag) as bag:
-        subject = next(bag.messages(['/subject']))[2]
-        first = next(bag.messages(['/markers']))[2]
-    assert subject.calibration_rms < 0.005
-    assert len(subject.marker_names) * 3 == subject.marker_offsets.size
-    # Row 1 of the file: C7 at (-0.278799, 1.46173, -0.61037), x forward, y up, z right.
-    c7 = first.positions.reshape(-1, 3)[split(first.names).index('C7')]
-    np.testing.assert_allclose(c7, (-0.278799, 0.61037, 1.46173), atol=1e-9)

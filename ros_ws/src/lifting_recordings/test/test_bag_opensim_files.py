@@ -10,10 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from human_model.opensim_storage import Storage, write_storage
 from lifting_recordings.exceptions import FileFormatError
 from lifting_recordings.opensim_files import MarkerTable, read_storage, read_trc, write_trc
 from lifting_recordings.opensim_forces import plates_from_storage
-from muscle_analyzer.core.opensim_bridge.storage import Storage, write_storage
 
 NAMES = ('C7', 'R.Heel', 'L toe')
 

@@ -49,35 +49,6 @@ class ModelFileError(MuscleAnalyzerError):
     """The musculoskeletal model's file is not installed."""
 
 
-class StorageError(MuscleAnalyzerError):
-    """An OpenSim table over time cannot be read or written; names file, line and column.
-
-    Parameters
-    ----------
-    path : object
-        The file, or the table's name.
-    problem : str
-        What is wrong, with the offending value.
-    line : int, optional
-        1-based line number.
-    column : str, optional
-        Label of the column.
-    """
-
-    def __init__(
-        self, path: object, problem: str, *, line: int | None = None, column: str | None = None
-    ) -> None:
-        where = f'{path}'
-        if line is not None:
-            where += f', line {line}'
-        if column is not None:
-            where += f', column {column!r}'
-        super().__init__(f'{where}: {problem}')
-        self.problem = problem
-        self.line = line
-        self.column = column
-
-
 class ModelWriteError(MuscleAnalyzerError):
     """A model holds something that cannot be written as an `.osim` file."""
 

@@ -12,13 +12,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from muscle_analyzer.core.exceptions import OpenSimError, StorageError
+from human_model.exceptions import StorageError
+from human_model.opensim_storage import Storage, write_storage
+from muscle_analyzer.core.exceptions import OpenSimError
 from muscle_analyzer.core.loads.options import MuscleAnalyzerOptions
 from muscle_analyzer.core.opensim_bridge import setup_files as files
 from muscle_analyzer.core.opensim_bridge.compare import DIFFERENT_PROBLEM, compare, difference
 from muscle_analyzer.core.opensim_bridge.own_results import OwnSide
 from muscle_analyzer.core.opensim_bridge.results import read_opensim
-from muscle_analyzer.core.opensim_bridge.storage import Storage, write_storage
 from muscle_analyzer.core.recruitment.reserves import read_reserves
 from muscle_analyzer.core.recruitment.static_optimization import StaticOptimizationOptions
 

@@ -8,7 +8,9 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from muscle_analyzer.core.exceptions import InputArrayError, StorageError, TransferError
+from human_model.exceptions import StorageError
+from human_model.opensim_storage import read_storage, write_storage
+from muscle_analyzer.core.exceptions import InputArrayError, TransferError
 from muscle_analyzer.core.multibody.inverse_dynamics import add_force, inverse_dynamics
 from muscle_analyzer.core.multibody.kinematics import forward_kinematics
 from muscle_analyzer.core.multibody.model import compile_model
@@ -20,7 +22,6 @@ from muscle_analyzer.core.opensim_bridge.export import (
     rotational_coordinates,
 )
 from muscle_analyzer.core.opensim_bridge.motion_on_model import motion_on_model
-from muscle_analyzer.core.opensim_bridge.storage import read_storage, write_storage
 from muscle_analyzer.core.osim.reader import read_osim
 from muscle_analyzer.core.recruitment.reserves import read_reserves
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from human_model.opensim_storage import Storage, read_storage, write_storage
 from muscle_analyzer.core.exceptions import OpenSimError
 from muscle_analyzer.core.opensim_bridge import process, script, setup_files
 from muscle_analyzer.core.opensim_bridge.process import (
@@ -16,7 +17,6 @@ from muscle_analyzer.core.opensim_bridge.process import (
     find_opensim,
     run_opensim,
 )
-from muscle_analyzer.core.opensim_bridge.storage import Storage, read_storage, write_storage
 
 
 @pytest.fixture

@@ -5,18 +5,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 
 from lift_predictor.core.exceptions import TaskError, UnreachableError
 from lift_predictor.core.planning.plan_task import FARTHEST, NEAREST, Feet, Placement, PlanTask
 from lift_predictor.core.planning.planned_lift import PlannedLift
-from lift_predictor.core.problem.model import T
+from lift_predictor.core.problem.model import LiftModel, T
 from lift_predictor.core.problem.run import SolverRun, Start
-
-if TYPE_CHECKING:
-    from lift_predictor.core.planning.planner import Planning
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +47,21 @@ class Trial:
         return start if np.isfinite(self.value) else None
 
 
-def search_feet(planning: Planning[T], task: PlanTask) -> tuple[Trial, tuple[Placement, ...]]:
+class FeetTrials(Protocol[T]):
+    """Planning as far as the search needs it."""
+
+    @property
+    def model(self) -> LiftModel[T]:
+        """Model of the lifting person."""
+
+    def trial(self, task: PlanTask, feet: Feet, neighbour: Trial | None) -> Trial:
+        """Solve a plan fast to compare places of the feet, from the best place so far."""
+
+    def report(self, stage: str, done: int, total: int, best: float) -> None:
+        """Report the progress."""
+
+
+def search_feet(planning: FeetTrials[T], task: PlanTask) -> tuple[Trial, tuple[Placement, ...]]:
     """Search the place of the feet: candidates, then steps from the best that become shorter.
 
     Each place is solved from the motion of the best place so far. It is a search for a good place

@@ -13,14 +13,12 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final, Generic
+from typing import Final, Generic, Protocol
 
-from lift_predictor.core.problem.model import T
-from lift_predictor.core.problem.run import SolverRun
+from lift_predictor.core.problem.model import LiftModel, T
+from lift_predictor.core.problem.run import SolverRun, Start
 from lift_predictor.core.problem.verification import Verification
-
-if TYPE_CHECKING:
-    from lift_predictor.core.problem.task_solver import TaskSolver
+from lift_predictor.core.solvers.solution import Solution
 
 FINER_CANDIDATES: Final = 3
 """Minima that are tried on finer grids."""
@@ -31,18 +29,35 @@ Checked = tuple[tuple[SolverRun, ...], Verification | None]
 """Runs, and the check of the first; None: it did not converge."""
 
 
+class StartSolver(Protocol[T]):
+    """Solver of one task from one start; `TaskSolver` is one."""
+
+    @property
+    def model(self) -> LiftModel[T]:
+        """Model that defines the problems."""
+
+    def run(
+        self,
+        task: T,
+        start: Start,
+        warm: Solution | None = None,
+        deadline: float = float('inf'),
+    ) -> SolverRun:
+        """Solve a task from one start at the nodes, not checked between them."""
+
+
 class Refiner(Generic[T]):
     """Checks minima on the dense grid and improves them.
 
     Parameters
     ----------
-    solver : TaskSolver
+    solver : StartSolver
         Runs the solver.
     finer : callable
         Returns a solver with a factor more node intervals.
     """
 
-    def __init__(self, solver: TaskSolver[T], finer: Callable[[int], TaskSolver[T]]) -> None:
+    def __init__(self, solver: StartSolver[T], finer: Callable[[int], StartSolver[T]]) -> None:
         self._solver, self._finer = solver, finer
 
     def refine(

@@ -66,7 +66,7 @@ class TaskSolver(Generic[T]):
     """
 
     def __init__(self, model: LiftModel[T], stop: StopFlag | None = None) -> None:
-        self.model = model
+        self.model: LiftModel[T] = model
         self.stop = stop or StopFlag()
         self._finer: dict[int, TaskSolver[T]] = {}
         self._refiner = Refiner(self, self.finer)

@@ -15,13 +15,13 @@ from pathlib import Path
 
 import numpy as np
 
+from human_model.exceptions import StorageError
+from human_model.opensim_storage import Storage, read_storage, write_storage
 from human_model.typing import Array
-from muscle_analyzer.core.exceptions import StorageError
 from muscle_analyzer.core.multibody.model import MultibodyModel
 from muscle_analyzer.core.opensim_bridge import setup_files as files
 from muscle_analyzer.core.opensim_bridge.model_writer import write_osim
 from muscle_analyzer.core.opensim_bridge.motion_on_model import MotionOnModel
-from muscle_analyzer.core.opensim_bridge.storage import Storage, read_storage, write_storage
 from muscle_analyzer.core.recruitment.reserves import read_reserves
 
 #: The set-ups for a whole lift solve one sample in so many; each takes OpenSim seconds.

@@ -16,12 +16,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from human_model.opensim_storage import Storage, read_storage
 from human_model.typing import Array
 from muscle_analyzer.core.exceptions import OpenSimError
 from muscle_analyzer.core.multibody.model import MultibodyModel
 from muscle_analyzer.core.opensim_bridge import setup_files as files
 from muscle_analyzer.core.opensim_bridge.motion_on_model import MotionOnModel
-from muscle_analyzer.core.opensim_bridge.storage import Storage, read_storage
 
 Rows = NDArray[np.int64]
 

@@ -15,8 +15,8 @@ from pathlib import Path
 
 import numpy as np
 
+from human_model.exceptions import StorageError
 from human_model.typing import Array
-from muscle_analyzer.core.exceptions import StorageError
 
 _TIME = 'time'
 _ROW_KEYS = ('nrows', 'datarows')

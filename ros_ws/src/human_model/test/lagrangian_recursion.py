@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The thesis' recursive kinematics (2.1 to 2.4) and recursive Lagrangian dynamics (2.5 to 2.9).
 
-Written over the rows of a Denavit-Hartenberg chain with branches: where the thesis takes row
-i - 1 and i + 1, the parent and the sum over the children stand here. Where it has one external
-force and one moment, any number may act on any row; the vector recursion F of one force becomes
-the matrix recursion of the sum of ``r_k f_k^T``, so that ``f^T dA/dq F`` becomes
-``tr(dA/dq F)``. `compiled` computes the same torques by Newton-Euler and is what runs live.
+The reference for the compiled Newton-Euler method, by another principle. The recursion runs over
+the rows of a Denavit-Hartenberg chain with branches: the parent replaces row i - 1 of the thesis,
+the sum over the children replaces row i + 1. Any number of external forces and moments may act on
+any row; the vector recursion F of one force becomes the matrix recursion of the sum of
+``r_k f_k^T``, so that ``f^T dA/dq F`` becomes ``tr(dA/dq F)``.
 """
 
 from dataclasses import dataclass

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Plates moved to where quiet standing says that they are."""
+"""Plates moved so that quiet standing is balanced."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from human_model.skeletons import Skeleton3D
+from lifting.plate_registration import moved, offset_of, register_plates
 from lifting_recordings.exceptions import ConventionError, SubjectFileError
-from lifting_recordings.plate_registration import moved, offset_of, register_plates
 from lifting_recordings.recording import Plate, Recording, centre_of_pressure
 from lifting_recordings.subject_file import read_subject_file
 from motion_tracker.core.markers.marker_model import from_anthropometry
@@ -18,13 +18,18 @@ from motion_tracker.core.markers.marker_set import load_marker_set
 
 FRAMES, RATE, GRAVITY = 120, 100.0, 9.80665
 MARKER_SET = 'plug_in_gait_58'
+SUBJECT_FILE = """
+subject: {pseudonym: S1, sex: female, mass: 70.0, stature: 1.70, age: 30}
+task: {task_id: standing, description: standing, box_mass: 0.0, coupling: good,
+  lifts_per_minute: 1.0, lifts_per_day: 10, duration_hours: 1.0}
+"""
 
 
 @pytest.fixture
-def entry(standing, tmp_path):
+def entry(tmp_path):
     path = tmp_path / 'subject.yaml'
     path.write_text(
-        standing.subject_file
+        SUBJECT_FILE
         + f'recording: {{marker_set: {MARKER_SET}, plate_registration: quiet_standing}}\n'
     )
     return read_subject_file(path)
@@ -111,8 +116,8 @@ def test_what_is_needed_is_named(recording, entry):
         register_plates(short, entry, None)
 
 
-def test_unknown_registration_is_refused(standing, tmp_path):
+def test_unknown_registration_is_refused(tmp_path):
     path = tmp_path / 'subject.yaml'
-    path.write_text(standing.subject_file + 'recording: {plate_registration: by_eye}\n')
+    path.write_text(SUBJECT_FILE + 'recording: {plate_registration: by_eye}\n')
     with pytest.raises(SubjectFileError, match="plate_registration: 'by_eye' is neither"):
         read_subject_file(path)

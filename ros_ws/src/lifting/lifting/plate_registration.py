@@ -1,16 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Where the force plates are relative to the cameras, judged by a person who stands still.
+"""Position of the force plates relative to the cameras, from a person who stands still.
 
-While a person stands still the net moment at L5-S1 from above and from below differs by what the
-plates are off. Plates that are 10 mm off change joint torques by some 14 % (McCaw and DeVita 1995,
-J Biomech 28:985). If a subject file asks for it, both plates are moved so that the difference
-vanishes in quiet standing: by a horizontal shift, constant over the recording.
+While a person stands still, the net moments at L5-S1 from above and from below differ by the
+moment of the error in the positions of the plates. An error of 10 mm changes joint torques by some
+14 % (McCaw and DeVita 1995, J Biomech 28:985). If a subject file requests it, both plates are
+moved by one horizontal shift, constant over the recording, so that the difference is zero in quiet
+standing.
 
-Residual reduction (Delp et al. 2007) moves the trunk's centre of mass instead. The two look the
-same in standing; in a squat an offset of the plates stays what it was in the laboratory, and one
-of the trunk turns with the trunk. See the documentation of the validation for a recording in
-which it is the first.
+Residual reduction (Delp et al. 2007) moves the trunk's centre of mass instead. In standing both
+have the same effect. In a squat the offset of a plate stays constant in the laboratory; the offset
+of the trunk turns with the trunk. docs/validation.md shows a recording whose plates are displaced.
 """
 
 from __future__ import annotations
@@ -50,12 +50,12 @@ _CUTOFF = 25.0
 
 @dataclass(frozen=True, eq=False)
 class PlateOffset:
-    """What the plates' places lack.
+    """Correction of the positions of both plates.
 
     Attributes
     ----------
     offset : ndarray, shape (2,)
-        To add to the places of both plates, world x and y [m].
+        To add to the positions of both plates, world x and y [m].
     spread : ndarray, shape (2,)
         Standard deviation over the frames [m].
     """
@@ -65,23 +65,23 @@ class PlateOffset:
 
 
 def offset_of(missing: npt.ArrayLike, force: npt.ArrayLike) -> PlateOffset:
-    """Return the shift of the plates that gives what is missing, frame by frame.
+    """Return the shift of the plates that balances a missing moment.
 
     Parameters
     ----------
     missing : array-like, shape (n, 3)
-        Moment that the ground does not give [N m].
+        Moment from above less that from below, per sample [N m].
     force : array-like, shape (n, 3)
         Of the ground on the person [N].
     """
     moments, forces = (np.asarray(a, dtype=np.float64) for a in (missing, force))
-    # (x, y, 0) x force = missing; of its horizontal part the vertical force makes all.
+    # (x, y, 0) x force = missing; its horizontal part is due to the vertical force alone.
     rows = np.stack((-moments[:, 1], moments[:, 0]), axis=1) / forces[:, 2:]
     return PlateOffset(rows.mean(axis=0), rows.std(axis=0))
 
 
 def moved(plate: Plate, offset: npt.ArrayLike) -> Plate:
-    """Return a plate that is moved by `offset` (2,) [m] on the floor."""
+    """Return a plate moved by `offset`, shape (2,), on the floor [m]."""
     shift = np.array([*np.asarray(offset, dtype=np.float64), 0.0])
     return replace(plate, moment=plate.moment + np.cross(shift, plate.force))
 
@@ -89,13 +89,13 @@ def moved(plate: Plate, offset: npt.ArrayLike) -> Plate:
 def register_plates(
     recording: Recording, entry: SubjectFile, calibration: MarkerCalibration | None
 ) -> Recording:
-    """Return the recording with its plates where quiet standing says that they are.
+    """Return the recording with its plates moved to balance quiet standing.
 
     Raises
     ------
     ConventionError
-        Plates or a marker set are missing, there is too little quiet standing, or the offset is
-        larger than one of plates is.
+        A plate or the marker set is missing, quiet standing is too short, or the offset is larger
+        than `LARGEST`.
     """
     where = f'{entry.path}: recording.plate_registration: {QUIET_STANDING}'
     if missing := [side for side in SIDES if side not in recording.plates]:
@@ -113,10 +113,10 @@ def register_plates(
             f'{1e3 * LARGEST:.0f} mm: look for the error in plates, mass or markers'
         )
     statement = (
-        f'Both plates were moved by {_said(by_model.offset)}, so that the net moment at L5-S1 is '
+        f'Both plates were moved by {_text(by_model.offset)}, so that the net moment at L5-S1 is '
         f'the same from above and below in {seconds:.1f} s of quiet standing (standard deviation '
         f'{1e3 * by_model.spread.max():.0f} mm); the segment masses of the skeleton alone would '
-        f'move them by {_said(by_segments.offset)}.'
+        f'move them by {_text(by_segments.offset)}.'
     )
     return replace(
         recording,
@@ -125,7 +125,7 @@ def register_plates(
     )
 
 
-def _said(offset: Array) -> str:
+def _text(offset: Array) -> str:
     x, y = (round(1e3 * float(shift)) for shift in offset)
     return f'{x:+d} mm forward and {y:+d} mm to the left'
 
@@ -133,7 +133,7 @@ def _said(offset: Array) -> str:
 def _offsets(
     recording: Recording, entry: SubjectFile, calibration: MarkerCalibration | None
 ) -> tuple[PlateOffset, PlateOffset, float]:
-    """Return the offsets by the musculoskeletal model and by the skeleton, and the time seen."""
+    """Return the offsets by the musculoskeletal model and by the skeleton, and the time used."""
     subject = entry.subject
     if calibration is not None:
         subject = replace(

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Marker calibration from a static trial, by the tracker's own calibration."""
+"""Marker calibration from a static trial, by the calibration of the tracker."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ def calibrate_markers(
     trial : Recording
         Quiet standing, in the graph's conventions.
     entry : SubjectFile
-        Who, and which marker set.
+        Person and marker set.
 
     Raises
     ------
     SubjectFileError
         No marker set is named.
     StaticTrialError
-        The trial cannot be used; says why.
+        The trial cannot be used; the message contains the reason.
     """
     name = entry.recording.marker_set
     if not name:
@@ -48,9 +48,9 @@ def calibrate_markers(
     except (MotionTrackerError, HumanModelError) as error:
         raise StaticTrialError(f'{trial.path}: {error}') from error
     left_out = sorted(set(trial.names) - {trial.names[i] for i in known})
-    said = [f'Static trial {trial.path.name}: {text}' for text in found.statements]
+    statements = [f'Static trial {trial.path.name}: {text}' for text in found.statements]
     if left_out:
-        said.append(f'Static trial {trial.path.name}: not in {name}: {", ".join(left_out)}.')
+        statements.append(f'Static trial {trial.path.name}: not in {name}: {", ".join(left_out)}.')
     result = found.calibration
     return (
         MarkerCalibration(
@@ -61,5 +61,5 @@ def calibrate_markers(
             rms=result.residual_rms,
             segment_lengths=result.lengths,
         ),
-        tuple(said),
+        tuple(statements),
     )

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from muscle_analyzer.core.exceptions import StorageError
-from muscle_analyzer.core.opensim_bridge.storage import Storage, read_storage, write_storage
+from human_model.exceptions import StorageError
+from human_model.opensim_storage import Storage, read_storage, write_storage
 
 GOOD = """Coordinates
 version=1
