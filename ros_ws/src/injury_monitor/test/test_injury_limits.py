@@ -8,9 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from injury_monitor.core.exceptions import DataFileError, InvalidInputError
+from injury_monitor.core.exceptions import InvalidInputError
 from injury_monitor.core.limits import Zone, limits_for, read_limits, zone_meaning
-from injury_monitor.core.tables import number, parse_table
 
 
 def test_published_values_and_sources():
@@ -64,27 +63,5 @@ def test_zone_of_nothing_is_unknown_and_every_zone_has_a_meaning():
 
 
 def test_unknown_limit_name_is_refused():
-    with pytest.raises(DataFileError, match='no_such_limit'):
+    with pytest.raises(InvalidInputError, match='no_such_limit'):
         limits_for(50.0).by_name('no_such_limit')
-
-
-@pytest.mark.parametrize(
-    ('text', 'match'),
-    [
-        ('a,b\n1,2\n', 'columns missing'),
-        ('a,source\n', 'empty'),
-        ('a,source\n1,\n', 'source'),
-        ('a,source\n1,x,y\n', 'number of columns'),
-        ('a,source\n1\n', 'number of columns'),
-    ],
-)
-def test_damaged_tables_are_refused_by_name(text, match):
-    with pytest.raises(DataFileError, match=match) as caught:
-        parse_table('damaged.csv', text, ['a'])
-    assert 'damaged.csv' in str(caught.value)
-
-
-def test_a_cell_that_is_no_number_is_named():
-    rows = parse_table('t.csv', 'a,source\nx,s\n', ['a'])
-    with pytest.raises(DataFileError, match=r"a of .* = 'x'"):
-        number('t.csv', rows[0], 'a')

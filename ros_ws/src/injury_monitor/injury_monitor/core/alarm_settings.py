@@ -6,11 +6,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from injury_monitor.core.exceptions import DataFileError, InvalidInputError
-from injury_monitor.core.tables import number, read_table
+from human_model.tables import read_table
+from injury_monitor.core.exceptions import InvalidInputError
 from injury_monitor.core.validation import non_negative
-
-_ALARMS = 'alarms.csv'
 
 
 @dataclass(frozen=True)
@@ -54,22 +52,16 @@ class AlarmSettings:
 
 def read_alarm_settings() -> tuple[AlarmSettings, ...]:
     """Read the default settings of ``data/alarms.csv``."""
-    columns = ('alarm', 'limit', 'severity', 'on_delay', 'off_delay', 'deadband', 'latching')
-    settings = []
-    for row in read_table(_ALARMS, columns):
-        if row['latching'] not in ('yes', 'no'):
-            raise DataFileError(
-                _ALARMS, f'latching of {row["alarm"]}', row['latching'], "must be 'yes' or 'no'"
-            )
-        settings.append(
-            AlarmSettings(
-                row['alarm'],
-                row['limit'],
-                int(number(_ALARMS, row, 'severity')),
-                number(_ALARMS, row, 'on_delay'),
-                number(_ALARMS, row, 'off_delay'),
-                number(_ALARMS, row, 'deadband'),
-                row['latching'] == 'yes',
-            )
+    columns = 'alarm limit severity on_delay off_delay deadband latching'
+    return tuple(
+        AlarmSettings(
+            row['alarm'],
+            row['limit'],
+            row.whole('severity'),
+            row.number('on_delay'),
+            row.number('off_delay'),
+            row.number('deadband'),
+            row.flag('latching'),
         )
-    return tuple(settings)
+        for row in read_table('injury_monitor', 'alarms.csv', columns)
+    )

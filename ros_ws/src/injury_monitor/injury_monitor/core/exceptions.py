@@ -30,27 +30,6 @@ class InvalidInputError(InjuryMonitorError, ValueError):
         self.value = value
 
 
-class DataFileError(InjuryMonitorError):
-    """A data file of the package is damaged.
-
-    Parameters
-    ----------
-    file : str
-        File name.
-    field : str
-        Row and column concerned.
-    value : object
-        Value in the file.
-    reason : str
-        Requirement on the value.
-    """
-
-    def __init__(self, file: str, field: str, value: object, reason: str) -> None:
-        super().__init__(f'{file}: {field} = {value!r}: {reason}')
-        self.file = file
-        self.field = field
-
-
 class UnknownAlarmError(InjuryMonitorError, KeyError):
     """An operator named an alarm this station does not have."""
 

@@ -13,8 +13,8 @@ import math
 from dataclasses import dataclass
 from enum import IntEnum
 
-from injury_monitor.core.exceptions import DataFileError, InvalidInputError
-from injury_monitor.core.tables import number, read_table
+from human_model.tables import read_table
+from injury_monitor.core.exceptions import InvalidInputError
 from injury_monitor.core.validation import finite, non_negative
 
 # NIOSH 94-110, section 1.3: load constant [kg] and the metric multiplier formulas [cm, deg].
@@ -26,10 +26,6 @@ _V_REFERENCE, _V_SLOPE, _V_MAX = 75.0, 0.003, 175.0
 _D_OFFSET, _D_FACTOR, _D_MIN, _D_MAX = 0.82, 4.5, 25.0, 175.0
 _A_SLOPE, _A_MAX = 0.0032, 135.0
 _LONGEST_DURATION = 8.0
-
-_FREQUENCY_TABLE = 'frequency_multipliers.csv'
-_COUPLING_TABLE = 'coupling_multipliers.csv'
-_BANDS = 'lifting_index_bands.csv'
 
 
 class Coupling(IntEnum):
@@ -143,11 +139,13 @@ def frequency_multiplier(lifts_per_minute: float, duration_hours: float, vertica
         'short' if duration_hours <= 1.0 else 'moderate' if duration_hours <= 2.0 else 'long'
     )
     column = f'{duration}_{"low" if vertical < _V_REFERENCE else "high"}'
-    rows = read_table(_FREQUENCY_TABLE, ('lifts_per_minute', column))
-    rates = [number(_FREQUENCY_TABLE, row, 'lifts_per_minute') for row in rows]
-    values = [number(_FREQUENCY_TABLE, row, column) for row in rows]
-    if sorted(set(rates)) != rates:
-        raise DataFileError(_FREQUENCY_TABLE, 'lifts_per_minute', rates, 'must increase')
+    columns = f'lifts_per_minute {column}'
+    rows = read_table('injury_monitor', 'frequency_multipliers.csv', columns)
+    rates = [row.number('lifts_per_minute') for row in rows]
+    values = [row.number(column) for row in rows]
+    for row, before, rate in zip(rows[1:], rates, rates[1:], strict=False):
+        if rate <= before:
+            raise row.error('lifts_per_minute', 'rates must increase')
     if lifts_per_minute <= rates[0]:
         return values[0]
     if lifts_per_minute > rates[-1]:
@@ -159,10 +157,9 @@ def frequency_multiplier(lifts_per_minute: float, duration_hours: float, vertica
 
 def coupling_multiplier(coupling: Coupling, vertical: float) -> float:
     """CM of NIOSH 94-110 table 7."""
-    for row in read_table(_COUPLING_TABLE, ('coupling', 'low', 'high')):
-        if row['coupling'] == Coupling(coupling).name.lower():
-            return number(_COUPLING_TABLE, row, 'low' if vertical < _V_REFERENCE else 'high')
-    raise DataFileError(_COUPLING_TABLE, 'coupling', coupling, 'is missing')
+    rows = read_table('injury_monitor', 'coupling_multipliers.csv', 'coupling low high')
+    row = {row['coupling']: row for row in rows}[Coupling(coupling).name.lower()]
+    return row.number('low' if vertical < _V_REFERENCE else 'high')
 
 
 def lifting_equation(task: LiftingTask, load: float) -> LiftingEquation:
@@ -199,7 +196,5 @@ def lifting_index_band(index: float) -> str:
     """Return the exposure band of a lifting index (ISO/TR 12295; NIOSH 94-110, revised 2021)."""
     if math.isnan(index) or index < 0.0:
         raise InvalidInputError('lifting_index', index, 'must not be NaN or negative')
-    for row in read_table(_BANDS, ('up_to', 'band')):
-        if index <= number(_BANDS, row, 'up_to'):
-            return row['band']
-    raise DataFileError(_BANDS, 'up_to', index, 'the last band must be infinite')
+    rows = read_table('injury_monitor', 'lifting_index_bands.csv', 'up_to band')
+    return next(row['band'] for row in rows if index <= row.number('up_to', math.inf))

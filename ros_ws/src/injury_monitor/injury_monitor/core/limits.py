@@ -8,12 +8,9 @@ import math
 from dataclasses import dataclass
 from enum import IntEnum
 
-from injury_monitor.core.exceptions import DataFileError
-from injury_monitor.core.tables import number, read_table
+from human_model.tables import read_table
+from injury_monitor.core.exceptions import InvalidInputError
 from injury_monitor.core.validation import non_negative
-
-_LIMITS = 'limits.csv'
-_ZONES = 'zones.csv'
 
 
 @dataclass(frozen=True)
@@ -97,7 +94,7 @@ class LimitSet:
         for limit in fixed:
             if limit.name == name:
                 return limit
-        raise DataFileError(_LIMITS, 'limit', name, 'is not a limit in force')
+        raise InvalidInputError('limit', name, 'is not a limit in force')
 
     def zone(self, compression: float) -> Zone:
         """Return the NIOSH 1981 zone of a compression force [N]; NaN gives UNKNOWN."""
@@ -112,21 +109,21 @@ class LimitSet:
 
 def read_limits() -> dict[str, Limit]:
     """Read all limits of ``data/limits.csv`` by name."""
-    columns = ('limit', 'quantity', 'value', 'unit', 'loads_per_day_above', 'loads_per_day_up_to')
+    columns = 'limit quantity value unit loads_per_day_above loads_per_day_up_to'
     limits: dict[str, Limit] = {}
-    for row in read_table(_LIMITS, columns):
-        value = number(_LIMITS, row, 'value')
-        if not value > 0.0 or math.isinf(value):
-            raise DataFileError(_LIMITS, f'value of {row["limit"]}', value, 'must be positive')
+    for row in read_table('injury_monitor', 'limits.csv', columns):
+        value = row.number('value')
+        if not value > 0.0:
+            raise row.error('value', 'a number above 0 is needed')
         if row['limit'] in limits:
-            raise DataFileError(_LIMITS, 'limit', row['limit'], 'is there twice')
+            raise row.error('limit', 'the limit occurs twice')
         limits[row['limit']] = Limit(
             row['limit'],
             row['quantity'],
             value,
             row['unit'],
-            number(_LIMITS, row, 'loads_per_day_above', 0.0),
-            number(_LIMITS, row, 'loads_per_day_up_to', math.inf),
+            row.number('loads_per_day_above', 0.0),
+            row.number('loads_per_day_up_to', math.inf),
             row['source'],
         )
     return limits
@@ -168,7 +165,5 @@ def zone_meaning(zone: Zone) -> str:
     """Return in words what a NIOSH 1981 zone means."""
     if zone is Zone.UNKNOWN:
         return 'unknown: no solved sample'
-    for row in read_table(_ZONES, ('zone', 'code', 'meaning')):
-        if int(number(_ZONES, row, 'code')) == zone:
-            return row['meaning']
-    raise DataFileError(_ZONES, 'code', int(zone), 'is missing')
+    rows = read_table('injury_monitor', 'zones.csv', 'zone code meaning')
+    return {row.whole('code'): row['meaning'] for row in rows}[zone]
