@@ -7,7 +7,6 @@ The recordings in bags/ are run offline into out/figures, as for the figures.
 
 from __future__ import annotations
 
-import csv
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from human_model.constants import GRAVITY
+from human_model.tables import read_file
 from lifting_cli.offline import run_offline
 from lifting_report import results_curves as curves
 from lifting_report.compared import peak
@@ -27,6 +27,7 @@ DOCS = Path(__file__).parent
 ROOT = DOCS.parent
 PAGE = DOCS / 'validation.md'
 STUDIES = DOCS / 'data' / 'l5_s1_studies.csv'
+COLUMNS = 'box_mass lift study body_mass compression compression_per_mass shear shear_per_mass'
 #: Recordings of the dissertation's tasks, and what sort of lift each is.
 TASKS = {
     'symmetric_7kg': 'symmetric',
@@ -146,14 +147,9 @@ def _vertebral(spine: SpineCurves, k: int) -> tuple[float, float]:
 def peaks_table(ours: list[OurPeak]) -> str:
     """Return the table of all peaks, by mass of the box."""
     rows: list[tuple[tuple[float, bool, int], list[str]]] = []
-    lines = [line for line in STUDIES.read_text(encoding='utf-8').splitlines()
-             if not line.startswith('#')]  # fmt: skip
-    for order, row in enumerate(csv.DictReader(lines)):
-        place = (float(row['box_mass']), row['lift'] == 'asymmetric', order)
-        rows.append((place, [
-            row['box_mass'], row['lift'], row['study'], row['body_mass'], row['compression'],
-            row['compression_per_mass'], row['shear'], row['shear_per_mass'],
-        ]))  # fmt: skip
+    for order, row in enumerate(read_file(STUDIES, COLUMNS, sourced=True)):
+        place = (row.number('box_mass'), row['lift'] == 'asymmetric', order)
+        rows.append((place, [row[column] for column in COLUMNS.split()]))
     for order, entry in enumerate(ours, len(rows)):
         place = (round(entry.box_mass, 1), entry.lift == 'asymmetric', order)
         forces = (entry.compression, entry.shear)

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The peaks printed in docs/validation.md are those that the recordings give."""
 
-import csv
 import importlib.util
 import re
 import sys
@@ -10,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from human_model.tables import read_file
 from lifting_report.results_file import read_results
 
 DOCS = Path(__file__).resolve().parents[1] / 'docs'
@@ -52,8 +52,7 @@ def test_printed_tables_are_those_of_the_recordings(module, ours, name):
 
 
 def test_every_published_number_has_its_source(module):
-    lines = module.STUDIES.read_text(encoding='utf-8').splitlines()
-    rows = list(csv.DictReader(line for line in lines if not line.startswith('#')))
+    rows = read_file(module.STUDIES, module.COLUMNS, sourced=True)
     assert len({row['study'] for row in rows} - {'dissertation'}) == 6
     assert all(row['source'].startswith('Zaman (2022), ') for row in rows)
 

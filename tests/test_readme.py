@@ -13,6 +13,8 @@ from pathlib import Path
 
 import pytest
 
+from human_model.tables import read_table
+
 ROOT = Path(__file__).resolve().parents[1]
 SOURCES = ROOT / 'ros_ws' / 'src'
 NODES = (
@@ -310,22 +312,15 @@ def test_data_flow_figure_is_up_to_date_and_names_every_topic() -> None:
 
 
 def test_alarms_table_is_that_of_the_monitor() -> None:
-    import csv
-
-    data = SOURCES / 'injury_monitor' / 'injury_monitor' / 'data'
-
-    def rows(name: str) -> list[dict[str, str]]:
-        lines = (data / name).read_text(encoding='utf-8').splitlines()
-        return list(csv.DictReader(line for line in lines if not line.startswith('#')))
-
-    limits = {row['limit']: row['value'] for row in rows('limits.csv')}
+    rows = read_table('injury_monitor', 'limits.csv', 'limit value')
+    limits = {row['limit']: row['value'] for row in rows}
     table = {
         name: (limit, latching)
         for name, limit, latching in re.findall(
             r'^\| `(\w+)` \| ([^|]+) \| (yes|no) \|', ALARMS, re.MULTILINE
         )
     }
-    alarms = rows('alarms.csv')
+    alarms = read_table('injury_monitor', 'alarms.csv', 'alarm limit latching')
     assert set(table) == {row['alarm'] for row in alarms}
     for row in alarms:
         limit, latching = table[row['alarm']]

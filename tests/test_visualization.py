@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import csv
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -15,6 +14,7 @@ import pytest
 import yaml
 
 from human_model.frames import matrix_from_quaternion
+from human_model.tables import read_table
 from lifting_cli.session import RunOptions, run_online
 from lifting_messages.conversions import motion_from_msg
 from lifting_messages.stamps import to_seconds
@@ -32,11 +32,8 @@ def test_colours_change_at_the_limits_of_the_monitor() -> None:
     parameters = yaml.safe_load(
         files('lifting_visualization').joinpath('data/parameters.yaml').read_text('utf-8')
     )
-    lines = files('injury_monitor').joinpath('data/limits.csv').read_text('utf-8').splitlines()
-    limits = {
-        row['limit']: float(row['value'])
-        for row in csv.DictReader(line for line in lines if not line.startswith('#'))
-    }
+    rows = read_table('injury_monitor', 'limits.csv', 'limit value')
+    limits = {row['limit']: row.number('value') for row in rows}
     for name in ('compression_action', 'compression_maximum'):
         assert parameters[name]['default'] == limits[name]
 

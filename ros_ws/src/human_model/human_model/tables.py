@@ -74,6 +74,13 @@ class Row(Mapping[str, str]):
         """Return several cells as finite numbers."""
         return tuple(self.number(column) for column in columns)
 
+    def within(self, column: str, low: float, high: float) -> float:
+        """Return a cell as a number between two limits."""
+        value = self.number(column)
+        if not low <= value <= high:
+            raise self.error(column, f'a number from {low:g} to {high:g} is needed')
+        return value
+
     def whole(self, column: str) -> int:
         """Return a cell as a whole number."""
         try:

@@ -23,7 +23,7 @@ def test_rows_give_text_and_checked_values():
     assert (one.number('value'), two.number('value')) == (1.5, -2000.0)
     assert (one.number('up_to', 9.0), two.number('up_to', 9.0)) == (9.0, 7.0)
     assert two.numbers('value', 'up_to') == (-2000.0, 7.0)
-    assert one.whole('count') == 3
+    assert one.within('count', 3.0, 4.0) == one.whole('count') == 3
     assert two.choice('side', {'left': 0, 'right': 1}) == 1
     assert one.flag('latching')
     assert not two.flag('latching')
@@ -36,6 +36,7 @@ def test_rows_give_text_and_checked_values():
         (lambda row: row.number('a'), "'a': a number is needed, found 'x'"),
         (lambda row: row.number('b'), "'b': a finite number is needed, found 'inf'"),
         (lambda row: row.number('c'), "'c': a number is needed, found ''"),
+        (lambda row: row.within('d', 0, 1), "'d': a number from 0 to 1 is needed, found '1.5'"),
         (lambda row: row.whole('d'), "'d': a whole number is needed, found '1.5'"),
         (lambda row: row.choice('a', {'y': 1, 'z': 2}), "'a': one of y, z is needed, found 'x'"),
         (lambda row: row.flag('a'), "'a': one of yes, no is needed, found 'x'"),

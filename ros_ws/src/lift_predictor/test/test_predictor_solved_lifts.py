@@ -4,14 +4,14 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
+from human_model.tables import Row
 from lift_predictor.core.bspline import RestToRestSpline
 from lift_predictor.core.exceptions import TaskError
 from lift_predictor.core.models.sagittal import solved_lifts as module
+from lift_predictor.core.models.sagittal.parameters import JOINTS
 from lift_predictor.core.models.sagittal.solved_lifts import library_starts, solved_lifts
 
 
@@ -34,16 +34,8 @@ def test_starts_are_the_same_motion_on_another_spline() -> None:
         np.testing.assert_allclose(finer.basis(s) @ fine.control, motion, atol=0.02)
 
 
-@pytest.mark.parametrize(
-    ('rows', 'words'),
-    [('1,1,0,0,0,0,0,nothing,x\n', 'line 2'), ('1,1,0,0,0,0,0,0,x\n', 'lift 1 has 1 points')],
-)
-def test_bad_file_is_named(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, rows: str, words: str
-) -> None:
-    header = 'lift,control_point,lumbar_extension,arm_flex,elbow_flex,hip_flexion,knee_angle,'
-    (tmp_path / 'data').mkdir()
-    (tmp_path / 'data' / 'solved_lifts.csv').write_text(header + 'ankle_angle,source\n' + rows)
-    monkeypatch.setattr(module, 'files', lambda package: tmp_path)
-    with pytest.raises(TaskError, match=words):
+def test_bad_lift_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    row = Row('lifts.csv', 2, {'lift': '1', **dict.fromkeys(JOINTS, '0')})
+    monkeypatch.setattr(module, 'read_table', lambda package, name, columns: (row,))
+    with pytest.raises(TaskError, match='lift 1 has 1 points, not 5'):
         solved_lifts.__wrapped__()

@@ -106,7 +106,7 @@ def test_subjects_from_a_table(tmp_path: Path) -> None:
     (subject,) = read_study(path).subjects
     assert subject.to_dict() == SUBJECT.to_dict()
     table.write_text('pseudonym,sex,mass,stature,age\nA,male,heavy,1.75,30\n')
-    with pytest.raises(PlanError, match=r"people\.csv: row 1: mass: .*'heavy'"):
+    with pytest.raises(PlanError, match=r"people\.csv, line 2, column 'mass': .*'heavy'"):
         read_study(path)
 
 

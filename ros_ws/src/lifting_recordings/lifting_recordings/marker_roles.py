@@ -10,15 +10,14 @@ all known.
 
 from __future__ import annotations
 
-import csv
 import re
 from collections.abc import Iterator, Mapping
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 
 from human_model.constants import SIDES
+from human_model.tables import read_table
 from human_model.typing import Array
 from lifting_recordings.exceptions import ConventionError
 
@@ -41,12 +40,10 @@ def _folded(text: str) -> str:
 @cache
 def _known() -> dict[tuple[str, bool], tuple[str, str]]:
     """Return role and side of each folded name, and whether it needs a side."""
-    path = Path(__file__).parent / 'data' / 'marker_roles.csv'
-    with path.open(newline='', encoding='utf-8') as file:
-        return {
-            (_folded(row['marker']), row['side'] == 'both'): (row['role'], row['side'])
-            for row in csv.DictReader(file)
-        }
+    return {
+        (_folded(row['marker']), row['side'] == 'both'): (row['role'], row['side'])
+        for row in read_table('lifting_recordings', 'marker_roles.csv', 'role side marker')
+    }
 
 
 def _meanings(name: str) -> Iterator[tuple[str, str]]:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from human_model.anthropometry import segment_lengths
+from human_model.exceptions import TableError
 from human_model.skeletons import Skeleton3D
 from human_model.subject import Subject
 from motion_tracker.core.exceptions import MarkerSetError
@@ -20,7 +21,7 @@ from motion_tracker.core.markers.marker_set import (
     mirror_name,
 )
 
-HEADER = ','.join(COLUMNS)
+HEADER = COLUMNS.replace(' ', ',')
 
 
 def test_the_sets_have_the_size_their_names_say():
@@ -100,26 +101,33 @@ def test_mirror_names(name, mirrored):
 @pytest.mark.parametrize(
     ('row', 'words'),
     [
-        ('A,pelvis,0.1,0,x,thigh,1,yes,d,s', 'line 2'),
-        ('A,pelvis,0.1,0,,thigh,1,yes,d,s', 'incomplete'),
-        ('A,pelvis,0.1,0,0,thihg,1,yes,d,s', "'thihg' is no segment length"),
-        ('A,pelvis,0.1,0,0,thigh,-1,yes,d,s', 'weight'),
-        ('A,pelvis,0.1,0,0,thigh,1,maybe,d,s', 'maybe'),
-        ('A,pelvis,0.1,0,0,thigh shank,1,yes,d,s', 'neither one nor'),
-        ('A,pelvis,0,0,0,thigh,1,yes,d,s\nA,pelvis,0,0,0,thigh,1,yes,d,s', "'A' occurs 2"),
+        ('A,pelvis,0.1,0,x,thigh,1,yes', "'z': a number .*'x'"),
+        ('A,pelvis,0.1,0,,thigh,1,yes', "'z': a number .*''"),
+        ('A,pelvis,0.1,0,0,thihg,1,yes', "'scale_with': 'thihg' is no segment length"),
+        ('A,pelvis,0.1,0,0,thigh,-1,yes', "'weight': .*'-1'"),
+        ('A,pelvis,0.1,0,0,thigh,1,maybe', "'tracking': .*'maybe'"),
+        ('A,pelvis,0.1,0,0,thigh shank,1,yes', "'scale_with': one or three"),
     ],
 )
 def test_damaged_files_are_refused_by_file_line_and_field(tmp_path, row, words):
     path = tmp_path / 'own_set.csv'
     path.write_text(f'{HEADER}\n{row}\n', encoding='utf-8')
-    with pytest.raises(MarkerSetError, match=words):
+    with pytest.raises(TableError, match=rf'own_set\.csv, line 2, column {words}'):
+        load_marker_set(path)
+
+
+def test_a_marker_may_not_occur_twice(tmp_path):
+    path = tmp_path / 'own_set.csv'
+    row = 'A,pelvis,0,0,0,thigh,1,yes\n'
+    path.write_text(f'{HEADER}\n{row}{row}', encoding='utf-8')
+    with pytest.raises(MarkerSetError, match=r"own_set\.csv: marker 'A' occurs 2"):
         load_marker_set(path)
 
 
 def test_missing_column_and_unknown_set_are_named(tmp_path):
     path = tmp_path / 'own_set.csv'
     path.write_text('marker,segment\nA,pelvis\n', encoding='utf-8')
-    with pytest.raises(MarkerSetError, match=r"own_set\.csv: column 'x'"):
+    with pytest.raises(TableError, match=r"own_set\.csv, line 1, column 'x'"):
         load_marker_set(path)
     with pytest.raises(MarkerSetError, match='plug_in_gait_58'):
         load_marker_set('plug_in_gate')
@@ -127,6 +135,6 @@ def test_missing_column_and_unknown_set_are_named(tmp_path):
 
 def test_a_set_without_positions_needs_a_static_trial(tmp_path, person):
     path = tmp_path / 'own_set.csv'
-    path.write_text(f'{HEADER}\nA,pelvis,,,,,1,yes,d,s\n', encoding='utf-8')
+    path.write_text(f'{HEADER}\nA,pelvis,,,,,1,yes\n', encoding='utf-8')
     with pytest.raises(MarkerSetError, match='static trial'):
         from_anthropometry(load_marker_set(path), person)

@@ -4,16 +4,14 @@
 
 from __future__ import annotations
 
-import csv
 import re
 from dataclasses import dataclass
-from importlib import resources
 
 import numpy as np
 from matplotlib.axes import Axes
 
+from human_model.tables import read_table
 from human_model.typing import Array
-from lifting_report.exceptions import ReportError
 from lifting_report.figures.curves import percent
 from lifting_report.figures.style import (
     COLOURS,
@@ -128,16 +126,8 @@ class MuscleGroup:
 
 def muscle_groups() -> tuple[MuscleGroup, ...]:
     """Read the muscles the thesis shows from ``data/report_muscles.csv``."""
-    file = resources.files('lifting_report').joinpath('data', 'report_muscles.csv')
-    lines = [
-        line
-        for line in file.read_text(encoding='utf-8').splitlines()
-        if line and not line.startswith('#')
-    ]
-    groups = tuple(MuscleGroup(row['group'], row['pattern']) for row in csv.DictReader(lines))
-    if not groups:
-        raise ReportError('report_muscles.csv', 0, 'must have rows')
-    return groups
+    rows = read_table('lifting_report', 'report_muscles.csv', 'group pattern')
+    return tuple(MuscleGroup(row['group'], row['pattern']) for row in rows)
 
 
 def muscle_activations(pair: Pair[Activations], name: str) -> str:

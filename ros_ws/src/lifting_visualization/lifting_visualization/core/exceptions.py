@@ -13,7 +13,3 @@ class LiftingVisualizationError(LiftingError, ValueError):
 
 class PictureError(LiftingVisualizationError):
     """Data that cannot be drawn; the message names the data and the reason."""
-
-
-class DataFileError(LiftingVisualizationError):
-    """A table of the package is damaged; names file and value."""

@@ -12,14 +12,13 @@ is, 100 (1 - hips / C7). It is 0 where only the legs bend, 100 where only the tr
 
 from __future__ import annotations
 
-import csv
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 from typing import Final
 
 import numpy as np
 
+from human_model.tables import read_table
 from human_model.typing import Array
 from lift_predictor.core.exceptions import PlanError
 
@@ -47,12 +46,11 @@ class Technique:
 @cache
 def techniques() -> dict[str, Technique]:
     """All techniques of `data/techniques.csv` by name."""
-    table = files('lift_predictor') / 'data' / 'techniques.csv'
-    rows = csv.DictReader(table.read_text(encoding='utf-8').splitlines())
+    columns = 'technique index_lower index_upper'
     found = {}
-    for row in rows:
+    for row in read_table('lift_predictor', 'techniques.csv', columns):
         lower, upper = (
-            float(row[key]) if row[key] else None for key in ('index_lower', 'index_upper')
+            row.number(key) if row[key] else None for key in ('index_lower', 'index_upper')
         )
         found[row['technique']] = Technique(row['technique'], lower, upper, row['source'])
     return found

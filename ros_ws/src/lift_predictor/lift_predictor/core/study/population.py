@@ -4,15 +4,15 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 
-from human_model.exceptions import HumanModelError
+from human_model.exceptions import HumanModelError, TableError
 from human_model.subject import Subject
+from human_model.tables import Row, read_file
 from lift_predictor.core.exceptions import PlanError
 from lift_predictor.core.planning.fields import Fields
 from lift_predictor.core.planning.task_file import read_subject
@@ -58,27 +58,17 @@ def read_subjects(fields: Fields, folder: Path) -> tuple[Subject, ...]:
 def _from_csv(path: Path) -> tuple[Subject, ...]:
     """Read a table with the columns pseudonym, sex, mass, stature, age and maybe strength_z."""
     try:
-        lines = path.read_text(encoding='utf-8').splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        raise PlanError(f'{path}: cannot be read: {error}') from error
-    reader = csv.DictReader(line for line in lines if not line.startswith('#'))
-    subjects = []
-    for number, row in enumerate(reader, 1):
-        values: dict[str, Any] = {}
-        for key, text in row.items():
-            if key in ('pseudonym', 'sex'):
-                values[key] = text
-                continue
-            try:
-                values[str(key)] = float(text)
-            except (TypeError, ValueError):
-                raise PlanError(
-                    f'{path}: row {number}: {key}: a number is needed, found {text!r}'
-                ) from None
-        subjects.append(read_subject(Fields(str(path), f'row {number}', values)))
-    if not subjects:
-        raise PlanError(f'{path}: no subject in it')
-    return tuple(subjects)
+        return tuple(
+            read_subject(Fields(row.file, f'line {row.line}', _values(row)))
+            for row in read_file(path, 'pseudonym sex mass stature age')
+        )
+    except TableError as error:
+        raise PlanError(str(error)) from error
+
+
+def _values(row: Row) -> dict[str, str | float]:
+    texts = ('pseudonym', 'sex')
+    return {key: row[key] if key in texts else row.number(key) for key in row}
 
 
 def _sample(fields: Fields) -> tuple[Subject, ...]:

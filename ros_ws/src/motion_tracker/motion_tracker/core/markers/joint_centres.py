@@ -2,15 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Joint centres of a person in a static trial, from landmarks (``data/joint_centres.csv``)."""
 
-import csv
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from human_model.tables import read_table
 from human_model.typing import Array
 from motion_tracker.core.exceptions import CalibrationError
-from motion_tracker.core.markers.marker_set import DATA
 
 #: Segment whose proximal joint each centre is.
 SEGMENT_OF_JOINT = {
@@ -45,23 +44,24 @@ def load_joint_definitions(marker_set: str) -> tuple[JointDefinition, ...]:
     Raises
     ------
     CalibrationError
-        If the set has none, or a row is damaged.
+        If the set has none.
     """
-    path = DATA / 'joint_centres.csv'
+    joints = {joint: joint for joint in SEGMENT_OF_JOINT}
     found = []
-    with path.open(newline='', encoding='utf-8') as file:
-        for line, row in enumerate(csv.DictReader(file), 2):
-            if row['marker_set'] != marker_set:
-                continue
-            names = tuple(row['markers'].split())
-            if row['joint'] not in SEGMENT_OF_JOINT or _METHODS.get(row['method']) != len(names):
-                raise CalibrationError(
-                    f'{path.name}, line {line}: {row["joint"]!r} by '
-                    f'{row["method"]!r} from {len(names)} markers'
-                )
-            found.append(JointDefinition(row['joint'], row['method'], names, row['source']))
+    for row in read_table(
+        'motion_tracker', 'joint_centres.csv', 'marker_set joint method markers'
+    ):
+        if row['marker_set'] != marker_set:
+            continue
+        names = tuple(row['markers'].split())
+        count = row.choice('method', _METHODS)
+        if len(names) != count:
+            raise row.error('markers', f'{count} markers are needed')
+        found.append(
+            JointDefinition(row.choice('joint', joints), row['method'], names, row['source'])
+        )
     if not found:
-        raise CalibrationError(f'{path.name}: no joint centres for marker set {marker_set!r}')
+        raise CalibrationError(f'joint_centres.csv: no joint centres for {marker_set!r}')
     return tuple(found)
 
 

@@ -11,7 +11,6 @@ over muscle, on the moving shoulder, or where the skin of the back slides. ``tra
 for markers that are only known by name or used in the static trial only.
 """
 
-import csv
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -21,6 +20,7 @@ import numpy as np
 
 from human_model.anthropometry import segment_lengths
 from human_model.subject import Subject
+from human_model.tables import Row, read_file, read_table
 from human_model.typing import Array
 from motion_tracker.core.exceptions import MarkerSetError
 
@@ -29,18 +29,7 @@ REFERENCE_SUBJECT = Subject('reference', 'male', 75.0, 1.75, 30.0)
 
 DATA = Path(__file__).resolve().parents[2] / 'data'
 
-COLUMNS = (
-    'marker',
-    'segment',
-    'x',
-    'y',
-    'z',
-    'scale_with',
-    'weight',
-    'tracking',
-    'description',
-    'source',
-)
+COLUMNS = 'marker segment x y z scale_with weight tracking'
 
 
 @dataclass(frozen=True)
@@ -131,59 +120,43 @@ def load_marker_set(name: str | Path) -> MarkerSet:
     Raises
     ------
     MarkerSetError
-        If the file does not exist, a column is missing, a value is not valid or a marker occurs
-        twice; the message names file, line and field.
+        If there is no set of that name, or a marker occurs twice.
+    TableError
+        If the file cannot be read, a column is missing or a value is not valid.
     """
-    path = Path(name) if str(name).endswith('.csv') else DATA / 'marker_sets' / f'{name}.csv'
-    if not path.is_file():
-        raise MarkerSetError(
-            f'marker set {name!r}: no file {path.name}; there are {", ".join(available())}'
-        )
-    with path.open(newline='', encoding='utf-8') as file:
-        reader = csv.DictReader(file)
-        missing = [column for column in COLUMNS if column not in (reader.fieldnames or [])]
-        if missing:
-            raise MarkerSetError(f'{path.name}: column {missing[0]!r} is missing')
-        markers = tuple(_parse(path.name, number, row) for number, row in enumerate(reader, 2))
+    if str(name).endswith('.csv'):
+        rows = read_file(Path(name), COLUMNS)
+    elif name in available():
+        rows = read_table('motion_tracker', f'marker_sets/{name}.csv', COLUMNS)
+    else:
+        raise MarkerSetError(f'marker set {name!r}: there are {", ".join(available())}')
+    markers = tuple(_parse(row) for row in rows)
     names = [marker.name for marker in markers]
     for marker in names:
         if names.count(marker) > 1:
-            raise MarkerSetError(
-                f'{path.name}: marker {marker!r} occurs {names.count(marker)} times'
-            )
-    return MarkerSet(path.stem, markers)
+            raise MarkerSetError(f'{name}: marker {marker!r} occurs {names.count(marker)} times')
+    return MarkerSet(Path(name).stem, markers)
 
 
-def _parse(file: str, line: int, row: Mapping[str, str]) -> Marker:
-    where = f'{file}, line {line}'
-    try:
-        numbers = [float(row[axis]) if row[axis] else np.nan for axis in 'xyz']
-        weight = float(row['weight'])
-    except ValueError as error:
-        raise MarkerSetError(f'{where}: {error}') from error
-    if not (np.isfinite(weight) and weight > 0):
-        raise MarkerSetError(f'{where}: weight {row["weight"]!r} is not positive')
-    if row['tracking'] not in ('yes', 'no'):
-        raise MarkerSetError(f'{where}: tracking {row["tracking"]!r} is neither yes nor no')
-    known = np.isfinite(numbers)
-    if known.any() and not known.all():
-        raise MarkerSetError(f'{where}: position of {row["marker"]!r} is incomplete')
+def _parse(row: Row) -> Marker:
+    weight = row.number('weight')
+    if weight <= 0.0:
+        raise row.error('weight', 'a number above 0 is needed')
+    known = any(row[axis] for axis in 'xyz')
     scale = row['scale_with'].split()
-    if known.all() and len(scale) not in (1, 3):
-        raise MarkerSetError(
-            f'{where}: scale_with {row["scale_with"]!r} names neither one nor three lengths'
-        )
+    if known and len(scale) not in (1, 3):
+        raise row.error('scale_with', 'one or three segment lengths are needed')
     for length in scale:
         if length not in _reference_lengths():
-            raise MarkerSetError(f'{where}: scale_with {length!r} is no segment length')
+            raise row.error('scale_with', f'{length!r} is no segment length')
     names = (scale * 3)[:3] if scale else ['', '', '']
     return Marker(
         row['marker'],
         row['segment'],
-        (numbers[0], numbers[1], numbers[2]) if known.all() else None,
+        (row.number('x'), row.number('y'), row.number('z')) if known else None,
         (names[0], names[1], names[2]),
         weight,
-        row['tracking'] == 'yes',
+        row.flag('tracking'),
     )
 
 

@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Segment lengths that two landmarks of one segment measure (``data/segment_measures.csv``)."""
 
-import csv
 from collections.abc import Mapping
 
 import numpy as np
 
+from human_model.tables import read_table
 from human_model.typing import Array
-from motion_tracker.core.markers.marker_set import DATA, MarkerSet
+from motion_tracker.core.markers.marker_set import MarkerSet
 
 
 def measured_lengths(
@@ -30,19 +30,13 @@ def measured_lengths(
     """
     placed = marker_set.positions(predicted)
     found = {}
-    with (DATA / 'segment_measures.csv').open(newline='', encoding='utf-8') as file:
-        for row in csv.DictReader(file):
-            names = row['pairs'].split()
-            if row['marker_set'] != marker_set.name or not all(n in markers for n in names):
-                continue
-            seen, expected = (
-                np.mean(
-                    [
-                        np.linalg.norm(at[a] - at[b])
-                        for a, b in zip(names[::2], names[1::2], strict=True)
-                    ]
-                )
-                for at in (markers, placed)
-            )
-            found[row['length']] = float(predicted[row['length']] * seen / expected)
+    for row in read_table('motion_tracker', 'segment_measures.csv', 'marker_set length pairs'):
+        names = row['pairs'].split()
+        if row['marker_set'] != marker_set.name or not all(n in markers for n in names):
+            continue
+        pairs = list(zip(names[::2], names[1::2], strict=True))
+        seen, expected = (
+            np.mean([np.linalg.norm(at[a] - at[b]) for a, b in pairs]) for at in (markers, placed)
+        )
+        found[row['length']] = float(predicted[row['length']] * seen / expected)
     return found

@@ -4,9 +4,7 @@
 
 from __future__ import annotations
 
-import csv
 from dataclasses import dataclass
-from importlib.resources import files
 
 import numpy as np
 
@@ -16,8 +14,8 @@ from human_model.inertia import combine
 from human_model.skeletons import Skeleton2D
 from human_model.strength import JointStrength
 from human_model.subject import Subject
+from human_model.tables import read_table
 from human_model.typing import Array
-from lift_predictor.core.exceptions import TaskError
 from lift_predictor.core.models.sagittal.parameters import (
     BODIES,
     CIRCLE_BODIES,
@@ -151,14 +149,15 @@ def _circles(subject: Subject, neutral: dict[str, Array]) -> Array:
     dimensions = body_dimensions(subject.sex, subject.stature, subject.mass)
     circle = np.zeros((len(CIRCLE_BODIES) * CIRCLES_PER_BODY, N_CIRCLE))
     used = dict.fromkeys(CIRCLE_BODIES, 0)
-    table = files('lift_predictor') / 'data' / 'collision_circles.csv'
-    for line in csv.DictReader(table.read_text(encoding='utf-8').splitlines()):
-        name, dimension = line['body'], line['dimension']
-        if name not in used or used[name] == CIRCLES_PER_BODY or dimension not in dimensions:
-            raise TaskError(f'collision_circles.csv: body {name!r} with dimension {dimension!r}')
+    columns = 'body along dimension divisor'
+    for line in read_table('lift_predictor', 'collision_circles.csv', columns):
+        name, size = line['body'], line.choice('dimension', dimensions)
+        if used.get(name, CIRCLES_PER_BODY) == CIRCLES_PER_BODY:
+            bodies = ', '.join(CIRCLE_BODIES)
+            raise line.error('body', f'{CIRCLES_PER_BODY} circles for each of {bodies} are needed')
         origin, end = _ENDS[name]
-        centre = float(line['along']) * (neutral[end] - neutral[origin])
+        centre = line.number('along') * (neutral[end] - neutral[origin])
         row = CIRCLE_BODIES.index(name) * CIRCLES_PER_BODY + used[name]
-        circle[row] = (centre[0], centre[2], dimensions[dimension] / float(line['divisor']))
+        circle[row] = (centre[0], centre[2], size / line.number('divisor'))
         used[name] += 1
     return circle

@@ -9,13 +9,12 @@ guesses do not find.
 
 from __future__ import annotations
 
-import csv
 from functools import cache
-from importlib.resources import files
 from typing import Final
 
 import numpy as np
 
+from human_model.tables import read_table
 from human_model.typing import Array
 from lift_predictor.core.bspline import RestToRestSpline
 from lift_predictor.core.exceptions import TaskError
@@ -33,17 +32,15 @@ def solved_lifts() -> tuple[Array, ...]:
 
     Raises
     ------
+    TableError
+        A value is no number.
     TaskError
-        A lift without all control points, or a value that is no number.
+        A lift does not have all control points.
     """
-    text = (files('lift_predictor') / 'data' / 'solved_lifts.csv').read_text(encoding='utf-8')
-    lifts: dict[str, list[list[float]]] = {}
-    for line, row in enumerate(csv.DictReader(text.splitlines()), 2):
-        try:
-            values = [float(row[joint]) for joint in JOINTS]
-        except (KeyError, TypeError, ValueError) as error:
-            raise TaskError(f'solved_lifts.csv, line {line}: {error}') from error
-        lifts.setdefault(row['lift'], []).append(values)
+    columns = ' '.join(('lift', *JOINTS))
+    lifts: dict[str, list[tuple[float, ...]]] = {}
+    for row in read_table('lift_predictor', 'solved_lifts.csv', columns):
+        lifts.setdefault(row['lift'], []).append(row.numbers(*JOINTS))
     n_free = RestToRestSpline(N_CONTROL).n_free
     for name, points in lifts.items():
         if len(points) != n_free:

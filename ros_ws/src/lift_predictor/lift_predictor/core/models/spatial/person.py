@@ -4,9 +4,7 @@
 
 from __future__ import annotations
 
-import csv
 from dataclasses import dataclass
-from importlib.resources import files
 from typing import Any, Final
 
 import numpy as np
@@ -17,6 +15,7 @@ from human_model.inertia import combine
 from human_model.skeletons import Skeleton3D
 from human_model.strength import JointStrength
 from human_model.subject import Subject
+from human_model.tables import read_table
 from human_model.typing import Array
 from lift_predictor.core.exceptions import TaskError
 from lift_predictor.core.models.spatial.parameters import (
@@ -177,16 +176,12 @@ def _spheres(subject: Subject, skeleton: Skeleton3D) -> Array:
         'lumbar': np.array([length['t12l1_forward'], 0.0, length['t12l1_height']]),
         'thorax': np.array([length['shoulder_forward'], 0.0, length['shoulder_height']]),
     }
-    table = files('lift_predictor') / 'data' / 'collision_spheres.csv'
+    columns = 'sphere body along dimension divisor'
     rows: dict[str, tuple[str, Array]] = {}
-    for line in csv.DictReader(table.read_text(encoding='utf-8').splitlines()):
-        segment, dimension = line['body'], line['dimension']
-        if segment not in along or dimension not in dimensions:
-            raise TaskError(
-                f'collision_spheres.csv: body {segment!r} with dimension {dimension!r}'
-            )
-        radius = dimensions[dimension] / float(line['divisor'])
-        rows[line['sphere']] = (segment, np.append(float(line['along']) * along[segment], radius))
+    for line in read_table('lift_predictor', 'collision_spheres.csv', columns):
+        centre = line.number('along') * line.choice('body', along)
+        radius = line.choice('dimension', dimensions) / line.number('divisor')
+        rows[line['sphere']] = (line['body'], np.append(centre, radius))
     spheres = np.zeros((len(SPHERE_NAMES), 4))
     for i, (name, body) in enumerate(zip(SPHERE_NAMES, SPHERE_BODIES, strict=True)):
         plain = name if name in rows else name.removesuffix('_r').removesuffix('_l')
