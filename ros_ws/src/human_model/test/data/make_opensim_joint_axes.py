@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 import opensim
 
+SOURCE = 'OpenSim 4.6 on the lifting full-body model of the pose2sim wheel'
 PROBES = {
     'pelvis_tx': 'pelvis',
     'pelvis_ty': 'pelvis',
@@ -95,9 +96,9 @@ def main() -> None:
         vector /= np.linalg.norm(vector)
         lines.append([name, kind, *(f'{component:.6f}' for component in vector)])
     with (Path(__file__).parent / 'opensim_joint_axes.csv').open('w', newline='') as file:
-        writer = csv.writer(file)
-        writer.writerow(['coordinate', 'kind', 'x', 'y', 'z'])
-        writer.writerows(lines)
+        writer = csv.writer(file, lineterminator='\n')
+        writer.writerow(['coordinate', 'kind', 'x', 'y', 'z', 'source'])
+        writer.writerows([*line, SOURCE] for line in lines)
 
 
 if __name__ == '__main__':

@@ -5,7 +5,9 @@
 import numpy as np
 import pytest
 
-from muscle_analyzer.core.exceptions import OptionError
+from human_model.exceptions import TableError
+from human_model.tables import Row
+from muscle_analyzer.core.subject import coordinate_ranges
 from muscle_analyzer.core.subject.coordinate_ranges import with_published_ranges
 
 
@@ -23,9 +25,8 @@ def test_forearm_turns_as_far_as_people_can_and_nothing_else_changes(lifting_mod
         assert published[name] == pytest.approx([0.0, 170.0], abs=1e-3)
 
 
-@pytest.mark.parametrize('row', ['pro_sup_r,0.0,much,x', 'pro_sup_r,2.0,1.0,x'])
-def test_bad_range_is_named(lifting_model, tmp_path, row):
-    path = tmp_path / 'ranges.csv'
-    path.write_text(f'coordinate,lower,upper,source\n{row}\n', encoding='utf-8')
-    with pytest.raises(OptionError, match=r'ranges\.csv: pro_sup_r'):
-        with_published_ranges(lifting_model, path)
+def test_empty_range_is_named(lifting_model, monkeypatch):
+    row = Row('ranges.csv', 2, {'coordinate': 'pro_sup_r', 'lower': '2.0', 'upper': '1.0'})
+    monkeypatch.setattr(coordinate_ranges, 'read_table', lambda *table: (row,))
+    with pytest.raises(TableError, match=r"ranges\.csv, line 2, column 'upper': .*'1.0'"):
+        with_published_ranges(lifting_model)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from human_model.subject import Subject
+from human_model.tables import read_table
 from muscle_analyzer.core.exceptions import OptionError, ScalingError
 from muscle_analyzer.core.multibody.kinematics import body_jacobians, forward_kinematics
 from muscle_analyzer.core.multibody.model import compile_model
@@ -17,7 +18,6 @@ from muscle_analyzer.core.osim.reader import read_osim
 from muscle_analyzer.core.subject.muscle_strength import (
     StrengthOptions,
     StrengthScaling,
-    _table,
     force_factors,
     reference_person,
 )
@@ -100,7 +100,7 @@ def test_what_a_muscle_follows_is_what_it_does(lifting_model):
     state = forward_kinematics(body.tree, body.default, zero, zero)
     arms = posture_paths(path_table(body), state, body_jacobians(body.tree, state)).moment_arm
     checked = 0
-    for row in _table('strength_muscles'):
+    for row in read_table('muscle_analyzer', 'strength_muscles.csv', 'pattern coordinate bound'):
         if 'moment arm' not in row['source'] or 'change sign' in row['source']:
             continue
         name = {'lumbar_extension': 'L5_S1_Flex_Ext'}.get(row['coordinate'], row['coordinate'])

@@ -12,16 +12,15 @@ activation dynamics gives activations in phase with force; co-contraction is in 
 
 from __future__ import annotations
 
-import csv
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 
 import numpy as np
 from numpy.typing import NDArray
 
+from human_model.tables import read_table
 from human_model.typing import Array
 from muscle_analyzer.core.emg.envelopes import Envelopes
 from muscle_analyzer.core.exceptions import EmgError
@@ -137,10 +136,9 @@ class LiftActivations:
 @cache
 def emg_muscles() -> tuple[EmgMuscle, ...]:
     """Return the rows of `data/emg_channels.csv`."""
-    text = files('muscle_analyzer').joinpath('data/emg_channels.csv').read_text(encoding='utf-8')
     return tuple(
         EmgMuscle(row['code'], tuple(row['names'].split('|')), row['muscle'], row['pattern'])
-        for row in csv.DictReader(text.splitlines())
+        for row in read_table('muscle_analyzer', 'emg_channels.csv', 'code names muscle pattern')
     )
 
 

@@ -26,17 +26,16 @@ compression = +F_z, anterior shear = -F_x (the disc holds L5 back), lateral shea
 
 from __future__ import annotations
 
-import csv
 import math
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cache
-from importlib.resources import files
 from typing import NamedTuple
 
 import numpy as np
 
 from human_model.compiled_cache import kernel, njit
+from human_model.tables import read_table
 from human_model.typing import Array
 from muscle_analyzer.core.exceptions import InputArrayError, OptionError
 
@@ -103,9 +102,8 @@ class DiscLoad:
 @cache
 def disc_parameters(option: DiscOption) -> dict[str, float]:
     """Return an option's numbers by parameter name."""
-    text = files('muscle_analyzer').joinpath('data/disc_frames.csv').read_text(encoding='utf-8')
-    rows = csv.DictReader(text.splitlines())
-    return {row['parameter']: float(row['value']) for row in rows if row['option'] == option}
+    rows = read_table('muscle_analyzer', 'disc_frames.csv', 'option parameter value')
+    return {row['parameter']: row.number('value') for row in rows if row['option'] == option}
 
 
 def disc_option(name: str) -> DiscOption:

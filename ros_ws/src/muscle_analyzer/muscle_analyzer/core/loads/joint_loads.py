@@ -17,17 +17,15 @@ L5-S1, with the torso in place of the vertebra, and there are no other levels.
 
 from __future__ import annotations
 
-import csv
 import math
 from dataclasses import dataclass, replace
-from importlib.resources import files
 from typing import NamedTuple
 
 import numpy as np
 
 from human_model.compiled_cache import kernel
+from human_model.tables import read_table
 from human_model.typing import Array, IntArray
-from muscle_analyzer.core.exceptions import OptionError
 from muscle_analyzer.core.loads.disc_frame import (
     FORWARD_LEFT_UP,
     DiscOption,
@@ -73,24 +71,14 @@ class JointLoad(NamedTuple):
 
 
 def read_loaded_joints() -> tuple[LoadedJoint, ...]:
-    """Read the table of joints.
-
-    Raises
-    ------
-    OptionError
-        If a row cannot be used; names file, row and value.
-    """
-    path = files('muscle_analyzer') / 'data' / 'loaded_joints.csv'
-    joints = []
-    for row in csv.DictReader(path.read_text(encoding='utf-8').splitlines()):
-        if row['side'] not in ('upper', 'lower') or row['frame'] not in ('disc', 'body'):
-            raise OptionError(
-                f'{path}: {row["joint"]}: side {row["side"]!r}, frame {row["frame"]!r}'
-            )
-        joints.append(
-            LoadedJoint(row['joint'], row['body'], row['side'] == 'upper', row['frame'] == 'disc')
+    """Read the table of joints."""
+    upper, disc = {'upper': True, 'lower': False}, {'disc': True, 'body': False}
+    return tuple(
+        LoadedJoint(
+            row['joint'], row['body'], row.choice('side', upper), row.choice('frame', disc)
         )
-    return tuple(joints)
+        for row in read_table('muscle_analyzer', 'loaded_joints.csv', 'joint body side frame')
+    )
 
 
 def lumbosacral_body(model: MultibodyModel) -> str:

@@ -9,10 +9,7 @@ sign, is in ``data/joint_torques.csv``; joints whose strength is not published a
 
 from __future__ import annotations
 
-import csv
 from dataclasses import dataclass
-from importlib.resources import files
-from importlib.resources.abc import Traversable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,9 +17,10 @@ from numpy.typing import NDArray
 from human_model.motion import BodyMotion
 from human_model.strength import JointStrength
 from human_model.subject import Subject
+from human_model.tables import read_table
 from human_model.typing import Array
 from muscle_analyzer.core.boxed_tuple import boxed
-from muscle_analyzer.core.exceptions import InputArrayError, OptionError
+from muscle_analyzer.core.exceptions import InputArrayError
 from muscle_analyzer.core.loads.analysis import MuscleAnalysis
 from muscle_analyzer.core.loads.torque_arrays import TorqueTable, torques_and_limits
 
@@ -87,36 +85,16 @@ class TorqueRow:
     coordinate: str
 
 
-def read_torque_rows(path: Traversable | None = None) -> tuple[TorqueRow, ...]:
-    """Read which torque is compared with which strength.
-
-    Parameters
-    ----------
-    path
-        CSV file with the columns ``joint, from, name, sign, coordinate, source``; by default the
-        table of this package.
-
-    Raises
-    ------
-    OptionError
-        If a value cannot be used; names file, joint and value.
-    """
-    path = path or files('muscle_analyzer') / 'data' / 'joint_torques.csv'
+def read_torque_rows() -> tuple[TorqueRow, ...]:
+    """Read which torque is compared with which strength."""
     rows = []
-    for row in csv.DictReader(path.read_text(encoding='utf-8').splitlines()):
-        where = f'{path}: {row["joint"]}'
-        if row['from'] not in ('net_moment', 'coordinate'):
-            raise OptionError(f'{where}: from {row["from"]!r} is not net_moment or coordinate')
-        of_net_moment = row['from'] == 'net_moment'
+    columns = 'joint from name sign coordinate'
+    for row in read_table('muscle_analyzer', 'joint_torques.csv', columns):
+        of_net_moment = row.choice('from', {'net_moment': True, 'coordinate': False})
         if of_net_moment and row['name'] not in PELVIS_AXES:
-            raise OptionError(f'{where}: axis {row["name"]!r} is none of {", ".join(PELVIS_AXES)}')
-        if row['sign'] not in ('1', '-1'):
-            raise OptionError(f'{where}: sign {row["sign"]!r} is not 1 or -1')
-        rows.append(
-            TorqueRow(
-                row['joint'], of_net_moment, row['name'], float(row['sign']), row['coordinate']
-            )
-        )
+            raise row.error('name', f'one of {", ".join(PELVIS_AXES)} is needed')
+        sign = row.choice('sign', {'1': 1.0, '-1': -1.0})
+        rows.append(TorqueRow(row['joint'], of_net_moment, row['name'], sign, row['coordinate']))
     return tuple(rows)
 
 
@@ -138,8 +116,6 @@ class TorqueLimits:
     ------
     StrengthError
         If the set is not known or has no strength for a joint of the table.
-    OptionError
-        If the table cannot be used.
     """
 
     def __init__(

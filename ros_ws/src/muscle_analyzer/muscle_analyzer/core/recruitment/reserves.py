@@ -9,11 +9,9 @@ elsewhere (pelvis, neck, arms, toes) the reserve is the actuator.
 
 from __future__ import annotations
 
-import csv
 from dataclasses import dataclass
-from importlib.resources import files
-from importlib.resources.abc import Traversable
 
+from human_model.tables import read_table
 from muscle_analyzer.core.exceptions import OptionError
 
 #: Values of the column that distinguishes muscle-driven coordinates from others.
@@ -42,38 +40,25 @@ class Reserve:
     muscle_driven: bool
 
 
-def read_reserves(
-    coordinate_names: tuple[str, ...], path: Traversable | None = None
-) -> tuple[Reserve, ...]:
-    """Read the reserves of the given coordinates.
-
-    Parameters
-    ----------
-    coordinate_names
-        Coordinates of the model.
-    path
-        CSV file with the columns ``coordinate, joint, torque, driven_by, source``; by default the
-        table of this package.
+def read_reserves(coordinate_names: tuple[str, ...]) -> tuple[Reserve, ...]:
+    """Read the reserves of the given coordinates of a model.
 
     Raises
     ------
     OptionError
-        If a coordinate has no row, or a value cannot be used; names file, row and value.
+        If a coordinate has no row.
     """
-    path = path or files('muscle_analyzer') / 'data' / 'reserves.csv'
-    rows = {}
-    for row in csv.DictReader(path.read_text(encoding='utf-8').splitlines()):
-        where = f'{path}: {row["coordinate"]}'
-        if row['driven_by'] not in _DRIVERS:
-            raise OptionError(f'{where}: driven_by {row["driven_by"]!r} is none of {[*_DRIVERS]}')
-        try:
-            torque = float(row['torque'])
-        except ValueError:
-            raise OptionError(f'{where}: torque {row["torque"]!r} is not a number') from None
-        rows[row['coordinate']] = Reserve(
-            row['coordinate'], row['joint'], torque, _DRIVERS[row['driven_by']]
+    columns = 'coordinate joint torque driven_by'
+    rows = {
+        row['coordinate']: Reserve(
+            row['coordinate'],
+            row['joint'],
+            row.number('torque'),
+            row.choice('driven_by', _DRIVERS),
         )
+        for row in read_table('muscle_analyzer', 'reserves.csv', columns)
+    }
     missing = [name for name in coordinate_names if name not in rows]
     if missing:
-        raise OptionError(f'{path}: no reserve for the coordinates {", ".join(missing)}')
+        raise OptionError(f'reserves.csv: no reserve for the coordinates {", ".join(missing)}')
     return tuple(rows[name] for name in coordinate_names)

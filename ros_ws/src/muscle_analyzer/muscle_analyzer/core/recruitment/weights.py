@@ -4,13 +4,12 @@
 
 from __future__ import annotations
 
-import csv
 import re
 from enum import StrEnum
-from importlib.resources import files
 
 import numpy as np
 
+from human_model.tables import read_table
 from human_model.typing import Array
 from muscle_analyzer.core.exceptions import OptionError
 from muscle_analyzer.core.muscles.curves import MuscleParameters
@@ -76,10 +75,9 @@ def least_activations(muscle_names: tuple[str, ...], abdominal: float) -> Array:
     """
     if not 0.0 <= abdominal < 1.0:
         raise OptionError(f'abdominal_activation {abdominal} must be in [0, 1)')
-    table = files('muscle_analyzer') / 'data' / 'abdominal_muscles.csv'
-    rows = csv.DictReader(table.read_text(encoding='utf-8').splitlines())
+    rows = read_table('muscle_analyzer', 'abdominal_muscles.csv', 'pattern')
     pattern = re.compile('|'.join(row['pattern'] for row in rows))
     of_group = np.array([pattern.search(name) is not None for name in muscle_names])
     if abdominal > 0.0 and not of_group.any():
-        raise OptionError(f'abdominal_activation {abdominal}: the model has no muscle of {table}')
+        raise OptionError(f'abdominal_activation {abdominal}: the model has no abdominal muscle')
     return np.where(of_group, abdominal, 0.0)

@@ -18,17 +18,14 @@ joint (`rest`), so that this joint is where the subject has it.
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
-from importlib.resources import files
-from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 
 from human_model.frames import to_opensim
+from human_model.tables import Row, read_table
 from human_model.typing import Array
 from muscle_analyzer.core.exceptions import ScalingError
 from muscle_analyzer.core.multibody.kinematics import BodyState, forward_kinematics
@@ -70,17 +67,19 @@ class BodyPoints:
     frame_sigma: Array
 
 
-@cache
-def _table(name: str) -> tuple[Mapping[str, str], ...]:
-    text = files('muscle_analyzer').joinpath(f'data/{name}.csv').read_text(encoding='utf-8')
-    return tuple(MappingProxyType(row) for row in csv.DictReader(text.splitlines()))
+def _table(name: str, columns: str) -> tuple[Row, ...]:
+    return read_table('muscle_analyzer', f'{name}.csv', columns)
+
+
+def _point_rows() -> tuple[Row, ...]:
+    return _table('body_points', 'point rule body joints reference x y z sigma')
 
 
 def upright_coordinates(model: MultibodyModel) -> Array:
     """Return the independent coordinates (n_q,) of upright standing with palms in, rad or m."""
     q = np.zeros(len(model.coordinate_names))
-    for row in _table('upright_posture'):
-        q[model.coordinate_index(row['coordinate'])] = float(row['value'])
+    for row in _table('upright_posture', 'coordinate value'):
+        q[model.coordinate_index(row['coordinate'])] = row.number('value')
     return q
 
 
@@ -94,19 +93,19 @@ def generic_points(model: MultibodyModel) -> dict[str, Array]:
     """Return the points (3,) of the unscaled model standing upright, OpenSim's axes, m."""
     state = upright_state(model)
     points = {}
-    for row in _table('body_points'):
+    for row in _point_rows():
         body = model.body_index(row['body'])
         if row['rule'] == 'joint':
             points[row['point']] = state.joint_position[body]
         elif row['rule'] == 'middle':
             points[row['point']] = _reference(model, state.joint_position, row)
         elif row['x']:
-            local = np.array([float(row[axis]) for axis in 'xyz'])
+            local = np.array(row.numbers(*'xyz'))
             points[row['point']] = state.position[body] + state.rotation[body] @ local
     return points
 
 
-def _reference(model: MultibodyModel, joint_position: Array, row: Mapping[str, str]) -> Array:
+def _reference(model: MultibodyModel, joint_position: Array, row: Row) -> Array:
     """Return the mean position of the joints that a row names by their bodies."""
     indices = [model.body_index(body) for body in row['joints'].split()]
     mean: Array = joint_position[indices].mean(axis=0)
@@ -115,7 +114,7 @@ def _reference(model: MultibodyModel, joint_position: Array, row: Mapping[str, s
 
 def _subject_points(points: Mapping[str, Array]) -> dict[str, Array]:
     """Return the subject's points in OpenSim's axes, checked, with middles added."""
-    wanted = [row['point'] for row in _table('body_points')]
+    wanted = [row['point'] for row in _point_rows()]
     if missing := [name for name in wanted if name not in points]:
         raise ScalingError(f'points of the subject: {missing[0]!r} is missing')
     converted = {}
@@ -137,8 +136,8 @@ def _lengths(name: str, lengths: Mapping[str, float]) -> tuple[float, float]:
     """Return a length of the subject and the same of the unscaled model, m."""
     if name not in lengths:
         raise ScalingError(f'lengths of the subject: {name!r} is missing')
-    model = next(row for row in _table('model_lengths') if row['length'] == name)
-    return float(lengths[name]), float(model['value'])
+    model = {row['length']: row for row in _table('model_lengths', 'length value')}
+    return float(lengths[name]), model[name].number('value')
 
 
 def scale_factors(
@@ -163,7 +162,7 @@ def scale_factors(
     subject = _subject_points(points)
     generic = _with_middles(generic_points(model))
     factors = {name: np.full(3, np.nan) for name in model.body_names[1:]}
-    for row in _table('scale_rules'):
+    for row in _table('scale_rules', 'body axes from to measure'):
         if row['body'] not in factors:
             raise ScalingError(f'scale rule for body {row["body"]!r}, which the model has not')
         ways = [
@@ -211,7 +210,7 @@ def attach_points(model: MultibodyModel, points: Mapping[str, Array]) -> BodyPoi
     """
     subject = _subject_points(points)
     state = upright_state(model)
-    rows = _table('body_points')
+    rows = _point_rows()
     local = np.zeros((len(rows), 3))
     bodies = np.array([model.body_index(row['body']) for row in rows], dtype=np.int64)
     for i, (row, body) in enumerate(zip(rows, bodies, strict=True)):
@@ -223,15 +222,15 @@ def attach_points(model: MultibodyModel, points: Mapping[str, Array]) -> BodyPoi
             reference = np.mean([subject[name] for name in row['reference'].split()], axis=0)
             place = place + subject[row['point']] - reference
         local[i] = state.rotation[body].T @ (place - state.position[body])
-    frames = _table('body_frames')
+    frames = _table('body_frames', 'frame body sigma')
     frame_body = np.array([model.body_index(row['body']) for row in frames], dtype=np.int64)
     return BodyPoints(
         names=tuple(row['point'] for row in rows),
         body=bodies,
         local=local,
-        sigma=np.array([float(row['sigma']) for row in rows]),
+        sigma=np.array([row.number('sigma') for row in rows]),
         frame_names=tuple(row['frame'] for row in frames),
         frame_body=frame_body,
         frame_upright=state.rotation[frame_body],
-        frame_sigma=np.array([float(row['sigma']) for row in frames]),
+        frame_sigma=np.array([row.number('sigma') for row in frames]),
     )

@@ -9,40 +9,22 @@ forearm turn. At that limit the transfer has to choose between the hand's place 
 
 from __future__ import annotations
 
-import csv
 from dataclasses import replace
-from importlib.resources import files
-from importlib.resources.abc import Traversable
 
-from muscle_analyzer.core.exceptions import OptionError
+from human_model.tables import read_table
 from muscle_analyzer.core.osim.model import Coordinate, OsimModel
 
 
-def with_published_ranges(model: OsimModel, path: Traversable | None = None) -> OsimModel:
-    """Return the model with the ranges of a table in place of its own, rad.
+def with_published_ranges(model: OsimModel) -> OsimModel:
+    """Return the model with the published ranges in place of its own, rad.
 
-    Parameters
-    ----------
-    model : OsimModel
-        Coordinates that it has not are passed over: another model may have other arms.
-    path : path, optional
-        CSV file with the columns ``coordinate, lower, upper, source``; by default the table of
-        this package.
-
-    Raises
-    ------
-    OptionError
-        If a value is not a number or a range is empty; names file, row and value.
+    Coordinates that the model lacks are ignored: another model may have other arms.
     """
-    path = path or files('muscle_analyzer') / 'data' / 'coordinate_ranges.csv'
     ranges = {}
-    for row in csv.DictReader(path.read_text(encoding='utf-8').splitlines()):
-        try:
-            lower, upper = float(row['lower']), float(row['upper'])
-        except ValueError as error:
-            raise OptionError(f'{path}: {row["coordinate"]}: {error}') from None
+    for row in read_table('muscle_analyzer', 'coordinate_ranges.csv', 'coordinate lower upper'):
+        lower, upper = row.number('lower'), row.number('upper')
         if not lower < upper:
-            raise OptionError(f'{path}: {row["coordinate"]}: no range from {lower} to {upper}')
+            raise row.error('upper', f'a number above {lower:g} is needed')
         ranges[row['coordinate']] = (lower, upper)
 
     def changed(coordinate: Coordinate) -> Coordinate:

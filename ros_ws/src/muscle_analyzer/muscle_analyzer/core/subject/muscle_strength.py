@@ -16,17 +16,16 @@ from it is a second option (`data/strength_ageing.csv`).
 
 from __future__ import annotations
 
-import csv
 import re
 from dataclasses import dataclass
 from enum import StrEnum
-from importlib.resources import files
 
 import numpy as np
 
 from human_model.exceptions import StrengthError
 from human_model.strength import JointStrength, StrengthBound, surface
 from human_model.subject import Subject
+from human_model.tables import Row, read_table
 from human_model.typing import Array
 from muscle_analyzer.core.exceptions import OptionError, ScalingError
 from muscle_analyzer.core.osim.model import OsimModel
@@ -100,7 +99,9 @@ def force_factors(model: OsimModel, subject: Subject, options: StrengthOptions) 
         known = JointStrength('3d_40dof', reference, options.coefficient_set)
     except StrengthError as error:
         raise OptionError(f'strength population: {error}') from error
-    rows = [(re.compile(row['pattern']), row) for row in _table('strength_muscles')]
+    columns = 'pattern coordinate bound ageing'
+    table = read_table('muscle_analyzer', 'strength_muscles.csv', columns)
+    rows = [(re.compile(row['pattern']), row) for row in table]
     ratios: dict[str, float] = {}
     for pattern, row in rows:
         joint = row['coordinate'], row['bound']
@@ -112,24 +113,27 @@ def force_factors(model: OsimModel, subject: Subject, options: StrengthOptions) 
 
 def reference_person() -> Subject:
     """Return the person whose muscles the generic model has."""
-    (row,) = _table('reference_person')
-    return Subject(
-        'reference', row['sex'], float(row['mass']), float(row['stature']), float(row['age']),
-        strength_z=float(row['strength_z']),
-    )  # fmt: skip
+    columns = 'sex mass stature age strength_z'
+    (row,) = read_table('muscle_analyzer', 'reference_person.csv', columns)
+    mass, stature, age, strength_z = row.numbers('mass', 'stature', 'age', 'strength_z')
+    return Subject('reference', row['sex'], mass, stature, age, strength_z)
 
 
 def ageing_names() -> tuple[str, ...]:
     """Return the names of the known courses of ageing."""
-    return tuple(row['name'] for row in _table('strength_ageing'))
+    return tuple(row['name'] for row in _ageing_rows())
+
+
+def _ageing_rows() -> tuple[Row, ...]:
+    return read_table('muscle_analyzer', 'strength_ageing.csv', 'name from_age to_age loss')
 
 
 def _ageing(name: str, age: float) -> float:
     """Return the strength as a fraction of that in youth."""
-    for row in _table('strength_ageing'):
+    for row in _ageing_rows():
         if row['name'] == name:
-            first, last = float(row['from_age']), float(row['to_age'])
-            return 1.0 - float(row['loss']) * float(np.clip((age - first) / (last - first), 0, 1))
+            first, last = row.number('from_age'), row.number('to_age')
+            return 1.0 - row.number('loss') * float(np.clip((age - first) / (last - first), 0, 1))
     raise OptionError(
         f'strength_ageing {name!r} is not known; options: {", ".join(ageing_names())}'
     )
@@ -141,7 +145,7 @@ def _isometric(bound: StrengthBound) -> float:
     return abs(bound.magnitude) * float(largest)
 
 
-def _pattern(muscle: str, rows: list[tuple[re.Pattern[str], dict[str, str]]]) -> str:
+def _pattern(muscle: str, rows: list[tuple[re.Pattern[str], Row]]) -> str:
     for pattern, _ in rows:
         if pattern.search(muscle):
             return pattern.pattern
@@ -149,8 +153,3 @@ def _pattern(muscle: str, rows: list[tuple[re.Pattern[str], dict[str, str]]]) ->
         f'muscle {muscle!r}: no row of strength_muscles.csv says which joint strength it follows; '
         'take strength none or geometric with this model'
     )
-
-
-def _table(name: str) -> list[dict[str, str]]:
-    text = (files('muscle_analyzer') / 'data' / f'{name}.csv').read_text(encoding='utf-8')
-    return list(csv.DictReader(text.splitlines()))

@@ -12,19 +12,16 @@ segment's; their inertia tensors follow the masses and keep their shape.
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Mapping
 from dataclasses import replace
 from enum import StrEnum
-from functools import cache
-from importlib.resources import files
-from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
 
 from human_model.frames import to_opensim
 from human_model.skeleton import Skeleton
+from human_model.tables import read_table
 from human_model.typing import Array
 from muscle_analyzer.core.exceptions import ScalingError
 from muscle_analyzer.core.multibody.model import compile_model
@@ -48,12 +45,6 @@ class SegmentMass(NamedTuple):
 
     mass: float
     centre: Array
-
-
-@cache
-def _rows() -> tuple[Mapping[str, str], ...]:
-    text = files('muscle_analyzer').joinpath('data/segment_bodies.csv').read_text('utf-8')
-    return tuple(MappingProxyType(row) for row in csv.DictReader(text.splitlines()))
 
 
 def segment_masses(skeleton: Skeleton) -> dict[str, SegmentMass]:
@@ -91,7 +82,8 @@ def with_segment_masses(
     compiled = compile_model(model)
     state = upright_state(compiled)
     bodies = {body.name: body for body in model.bodies}
-    for row in _rows():
+    columns = 'segment bodies joint point'
+    for row in read_table('muscle_analyzer', 'segment_bodies.csv', columns):
         names = row['bodies'].split()
         if row['segment'] not in segments or row['point'] not in points:
             raise ScalingError(f'masses of the subject: no {row["segment"]!r} or {row["point"]!r}')
