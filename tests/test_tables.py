@@ -19,7 +19,7 @@ TABLES = sorted(
 #: A source is a publication with its year, a file, a model, data of others, or a choice of ours.
 CITED = re.compile(
     r'\b(18|19|20)\d\d\b|\.(py|osim|xml|csv|trc)\b|thesis|table \d|OpenSim|full-body model|ANSUR'
-    r'|Millard torque generators|Occupational Biomechanics|Reference Guide'
+    r'|Millard torque generators|Occupational Biomechanics|Reference Guide|Pose2Sim|Visual3D'
     r'|this project|engineering choice'
 )
 READER = SOURCES / 'human_model' / 'human_model' / 'tables.py'
