@@ -185,6 +185,26 @@ def test_a_fit_cut_short_says_that_it_did_not_converge(solver, skeleton, crouch)
     hasty = InverseKinematics(skeleton, solver.model, IKSettings(max_iterations=1))
     solution = hasty.solve(solver.predict(crouch), crouch + 0.05)
     assert solution.status is SolveStatus.TRACKER_NOT_CONVERGED
+    assert 'did not converge in 1 iterations' in solution.message
+    assert 'the 54 markers seen determine' in solution.message
+
+
+def test_few_markers_that_fit_badly_converge(skeleton, solver, crouch):
+    """With Gauss-Newton steps alone these fits are far from the optimum after 100 iterations."""
+    keep = [
+        'C7', 'RSHO', 'LSHO', 'RELB', 'LELB', 'RWRA', 'LWRA', 'RASI', 'LASI', 'RKNE', 'LKNE',
+        'RANK', 'LANK', 'RHEE', 'LHEE', 'RTOE', 'LTOE',
+    ]  # fmt: skip
+    few = InverseKinematics(skeleton, solver.model.only(keep))
+    rng = np.random.default_rng(5)
+    used = []
+    for share in np.linspace(0.0, 1.0, 40):
+        target = few.predict(share * crouch) + rng.normal(0.0, 0.015, (len(keep), 3))
+        solution = few.solve(target)
+        assert solution.status is not SolveStatus.TRACKER_NOT_CONVERGED, solution.message
+        assert solution.stationarity < 1e-6
+        used.append(solution.iterations)
+    assert max(used) > 20
 
 
 def test_input_of_the_wrong_shape_is_refused(solver):

@@ -23,7 +23,9 @@ from human_model.report import SolveStatus
 from human_model.skeleton import Skeleton
 from human_model.typing import Array
 from motion_tracker.core.exceptions import InverseKinematicsError
-from motion_tracker.core.inverse_kinematics.kernel import fit, marked, misfit, observed_curvature
+from motion_tracker.core.inverse_kinematics.judgement import judge
+from motion_tracker.core.inverse_kinematics.kernel import fit, marked, misfit
+from motion_tracker.core.inverse_kinematics.normal_equations import observed_curvature
 from motion_tracker.core.inverse_kinematics.solution import IKSettings, IKSolution, Observed
 from motion_tracker.core.inverse_kinematics.spine_prior import spine_prior
 from motion_tracker.core.markers.marker_model import MarkerModel
@@ -107,9 +109,9 @@ class InverseKinematics:
         """Coordinates that even the full marker set does not see; they stay at neutral."""
         return tuple(self.skeleton.coordinates[j] for j in np.flatnonzero(~self.observed))
 
-    def _observed(self, weight: Array) -> npt.NDArray[np.bool_]:
-        """Coordinates (n_q,) that the markers of positive weight determine."""
-        curvature = observed_curvature(
+    def _curvature(self, weight: Array) -> Array:
+        """Return the curvature (n_q,) of the fit about each coordinate, the others free."""
+        curvature: Array = observed_curvature(
             self.skeleton.tree,
             self.skeleton.standing(),
             self._body,
@@ -120,7 +122,21 @@ class InverseKinematics:
             self._pair_weight,
             self.settings.neutral_weight,
         )
-        return np.asarray(curvature > self.settings.observed_curvature)
+        return curvature
+
+    def _observed(self, weight: Array) -> npt.NDArray[np.bool_]:
+        """Coordinates (n_q,) that the markers of positive weight determine."""
+        return np.asarray(self._curvature(weight) > self.settings.observed_curvature)
+
+    def _not_converged(self, weight: Array, iterations: int, stationarity: float) -> str:
+        """Return why a fit stopped: the coordinate that the markers seen determine least."""
+        curvature = np.where(self.observed, self._curvature(weight), np.inf)
+        weakest = self.skeleton.coordinates[int(np.argmin(curvature))]
+        return (
+            f'inverse kinematics did not converge in {iterations} iterations (gradient '
+            f'{stationarity:.1e}); the {int((weight > 0).sum())} markers seen determine {weakest} '
+            'least'
+        )
 
     def _find_observed(self, weight: Array) -> Observed:
         """Return the coordinates that the markers of positive weight determine (cached)."""
@@ -193,8 +209,18 @@ class InverseKinematics:
             else:
                 q, position, weight, rejected, swapped = self._robust(q, target, weight, last, obs)
             residuals, rms, maximum, used = misfit(position, target, weight)
-        status, message = self._judge(
-            converged, rms, maximum, residuals, used, obs, swapped, rejected
+        stopped = '' if converged else self._not_converged(weight, iterations, stationarity)
+        status, message = judge(
+            self.settings,
+            self.model,
+            stopped,
+            rms,
+            maximum,
+            residuals,
+            used,
+            obs,
+            swapped,
+            rejected,
         )
         return IKSolution(
             q,
@@ -343,40 +369,6 @@ class InverseKinematics:
                 if crossed < 0.5 * straight:
                     pairs.append((int(a), int(b), straight, crossed))
         return pairs
-
-    def _judge(
-        self,
-        converged: bool,
-        rms: float,
-        maximum: float,
-        residuals: Array,
-        used: int,
-        obs: Observed,
-        swapped: str,
-        rejected: tuple[str, ...],
-    ) -> tuple[SolveStatus, str]:
-        if swapped:
-            return SolveStatus.TRACKER_MARKERS_SWAPPED, f'markers {swapped}'
-        if not converged:
-            return SolveStatus.TRACKER_NOT_CONVERGED, 'inverse kinematics did not converge'
-        if not (maximum <= self.settings.max_residual and rms <= self.settings.rms_residual):
-            worst = self.model.names[int(np.nanargmax(residuals))]
-            return (
-                SolveStatus.TRACKER_BAD_INPUT,
-                f'marker residuals rms {rms:.3f} m, largest {maximum:.3f} m at {worst}',
-            )
-        words = []
-        if used < len(residuals):
-            seen = {
-                s for s, r in zip(self.model.segments, residuals, strict=True) if np.isfinite(r)
-            }
-            blind = sorted(set(self.model.segments) - seen)
-            words += [f'no marker seen on {", ".join(blind)}'] if blind else []
-        if obs.names:
-            words.append(f'{", ".join(obs.names)} not observed: kept at the previous value')
-        if words:
-            return SolveStatus.TRACKER_MARKERS_MISSING, '; '.join(words)
-        return SolveStatus.OK, f'left out: {", ".join(rejected)}' if rejected else ''
 
     def _lost(self, weight: Array, last: Array | None, obs: Observed) -> IKSolution:
         """Answer for a frame whose markers do not even place the pelvis."""

@@ -9,8 +9,10 @@ Minimises over q, lower <= q <= upper,
 with marker positions p, measured positions x, prior r and a share s that the lower of two joints
 takes of their sum. Coordinates at a bound whose gradient points outward stay there
 (Bertsekas 1982, projected Newton); the others take a Levenberg-Marquardt step, which is cut at
-the bounds and accepted only if the objective falls. Everything is summed in a fixed order, so
-equal input gives equal bits.
+the bounds and accepted only if the objective falls. Gauss-Newton steps converge slowly where few
+markers fit badly; after ``_GAUSS_NEWTON`` of them the second derivatives of the marker positions
+are added to the Hessian (Nocedal and Wright 2006, section 10.3). Everything is summed in a fixed
+order, so equal input gives equal bits.
 """
 
 import numpy as np
@@ -19,24 +21,17 @@ from human_model.compiled import body_frames
 from human_model.compiled_cache import njit
 from human_model.tree import TreeArrays
 from human_model.typing import Array, IntArray
+from motion_tracker.core.inverse_kinematics.normal_equations import (
+    add_normal_equations,
+    add_pairs,
+    add_second_derivatives,
+    marker_positions,
+)
 
 _DAMPING_START = 1e-9
 _DAMPING_MAX = 1e6
-
-
-@njit
-def _positions(rotation: Array, origin: Array, body: IntArray, local: Array) -> Array:
-    out = np.empty((body.shape[0], 3))
-    for i in range(body.shape[0]):
-        b = body[i]
-        for r in range(3):
-            out[i, r] = (
-                origin[b, r]
-                + rotation[b, r, 0] * local[i, 0]
-                + rotation[b, r, 1] * local[i, 1]
-                + rotation[b, r, 2] * local[i, 2]
-            )
-    return out
+#: Steps without second derivatives; frames with a full marker set need 5 to 19 (measured).
+_GAUSS_NEWTON = 20
 
 
 @njit
@@ -62,56 +57,6 @@ def _objective(
         split = (1.0 - share[k]) * q[pair[k, 0]] - share[k] * q[pair[k, 1]]
         total += pair_weight[k] * split * split
     return total
-
-
-@njit
-def _normal_equations(
-    tree: TreeArrays,
-    origin: Array,
-    axis: Array,
-    position: Array,
-    body: IntArray,
-    target: Array,
-    weight: Array,
-    hessian: Array,
-    gradient: Array,
-) -> None:
-    """Add half the gradient and half the Gauss-Newton Hessian of the marker terms."""
-    n_q = gradient.shape[0]
-    path = np.empty(n_q, dtype=np.int64)
-    # Components of the columns of the Jacobian along the path, each in a row.
-    cx, cy, cz = np.empty(n_q), np.empty(n_q), np.empty(n_q)
-    for i in range(weight.shape[0]):
-        w = weight[i]
-        if w <= 0.0:
-            continue
-        count = 0
-        j = body[i]
-        while j >= 0:
-            if tree.kind[j] == 1:
-                cx[count], cy[count], cz[count] = axis[j, 0], axis[j, 1], axis[j, 2]
-            else:
-                x = position[i, 0] - origin[j, 0]
-                y = position[i, 1] - origin[j, 1]
-                z = position[i, 2] - origin[j, 2]
-                cx[count] = axis[j, 1] * z - axis[j, 2] * y
-                cy[count] = axis[j, 2] * x - axis[j, 0] * z
-                cz[count] = axis[j, 0] * y - axis[j, 1] * x
-            path[count] = j
-            count += 1
-            j = tree.parent[j]
-        ex, ey, ez = (
-            position[i, 0] - target[i, 0],
-            position[i, 1] - target[i, 1],
-            position[i, 2] - target[i, 2],
-        )
-        for a in range(count):
-            x, y, z = cx[a], cy[a], cz[a]
-            gradient[path[a]] += w * (x * ex + y * ey + z * ez)
-            # Paths run from the marker to the root, so path[a] >= path[b]: lower triangle.
-            row = hessian[path[a]]
-            for b in range(a, count):
-                row[path[b]] += w * (cx[b] * x + cy[b] * y + cz[b] * z)
 
 
 @njit
@@ -202,47 +147,6 @@ def _bounded_step(
 
 
 @njit
-def _add_pairs(hessian: Array, pair: IntArray, share: Array, pair_weight: Array) -> None:
-    """Add half the Hessian of the terms that tie two coordinates."""
-    for k in range(pair.shape[0]):
-        a, b, s = pair[k, 0], pair[k, 1], share[k]
-        hessian[a, a] += pair_weight[k] * (1.0 - s) ** 2
-        hessian[b, b] += pair_weight[k] * s**2
-        hessian[max(a, b), min(a, b)] -= pair_weight[k] * s * (1.0 - s)
-
-
-@njit
-def observed_curvature(
-    tree: TreeArrays,
-    q: Array,
-    body: IntArray,
-    local: Array,
-    weight: Array,
-    pair: IntArray,
-    share: Array,
-    pair_weight: Array,
-    floor: float,
-) -> Array:
-    """Curvature (n_q,) [m^2 or 1] of the fit about each coordinate, all others free to follow.
-
-    The reciprocal diagonal of the inverse Hessian of the marker and pair terms, plus ``floor``
-    on the diagonal: what is near the floor is not determined by the markers.
-    """
-    rotation, origin, axis = body_frames(tree, q)
-    position = _positions(rotation, origin, body, local)
-    n_q = q.shape[0]
-    hessian = np.zeros((n_q, n_q))
-    gradient = np.zeros(n_q)
-    _normal_equations(tree, origin, axis, position, body, position, weight, hessian, gradient)
-    _add_pairs(hessian, pair, share, pair_weight)
-    for a in range(n_q):
-        hessian[a, a] += floor
-        for b in range(a):
-            hessian[b, a] = hessian[a, b]
-    return 1.0 / np.diag(np.linalg.inv(hessian))
-
-
-@njit
 def marked(position: Array, weight: Array) -> tuple[Array, Array]:
     """Measured positions (n, 3) with zeros, and weights (n,) with zeros, where not seen."""
     target, trust = np.zeros_like(position), np.zeros_like(weight)
@@ -304,7 +208,7 @@ def fit(
     n_q = start.shape[0]
     q = np.minimum(np.maximum(start, lower), upper)
     rotation, origin, axis = body_frames(tree, q)
-    position = _positions(rotation, origin, body, local)
+    position = marker_positions(rotation, origin, body, local)
     value = _objective(position, target, weight, q, prior, prior_weight, pair, share, pair_weight)
     damping = _DAMPING_START
     step = np.zeros(n_q)
@@ -315,7 +219,9 @@ def fit(
         used += 1
         hessian = np.zeros((n_q, n_q))
         gradient = np.zeros(n_q)
-        _normal_equations(tree, origin, axis, position, body, target, weight, hessian, gradient)
+        add_normal_equations(tree, origin, axis, position, body, target, weight, hessian, gradient)
+        if used > _GAUSS_NEWTON:
+            add_second_derivatives(tree, origin, axis, position, body, target, weight, hessian)
         for j in range(n_q):
             hessian[j, j] += prior_weight[j]
             gradient[j] += prior_weight[j] * (q[j] - prior[j])
@@ -325,7 +231,7 @@ def fit(
             split = (1.0 - s) * q[a] - s * q[b]
             gradient[a] += pair_weight[k] * (1.0 - s) * split
             gradient[b] -= pair_weight[k] * s * split
-        _add_pairs(hessian, pair, share, pair_weight)
+        add_pairs(hessian, pair, share, pair_weight)
         count = 0
         free = np.empty(n_q, dtype=np.int64)
         stationarity = 0.0
@@ -343,7 +249,7 @@ def fit(
             if _bounded_step(hessian, gradient, free[:count], damping, q, lower, upper, step):
                 trial = np.minimum(np.maximum(q + step, lower), upper)
                 rotation, origin, axis = body_frames(tree, trial)
-                position = _positions(rotation, origin, body, local)
+                position = marker_positions(rotation, origin, body, local)
                 trial_value = _objective(
                     position, target, weight, trial, prior, prior_weight, pair, share, pair_weight
                 )
@@ -357,7 +263,7 @@ def fit(
             damping *= 10.0
         if not accepted:
             rotation, origin, axis = body_frames(tree, q)
-            position = _positions(rotation, origin, body, local)
+            position = marker_positions(rotation, origin, body, local)
             damping = _DAMPING_START
             break
         if moved < tolerance:

@@ -43,7 +43,7 @@ class IKSettings:
     observed_curvature: float = 1e-3
     max_residual: float = 0.08
     rms_residual: float = 0.03
-    max_iterations: int = 60
+    max_iterations: int = 100
     tolerance: float = 1e-7
 
 

@@ -44,7 +44,8 @@ class MarkerFrames:
     ) -> tuple[Array, list[str]]:
         """Positions (n_markers, 3) [m] in the model's order, and names not seen before.
 
-        A marker that is not there is NaN; so is one whose name occurs twice.
+        A marker that is not there is NaN; so is one whose name occurs twice, and one at exactly
+        0, 0, 0, with which many programs fill gaps.
 
         Raises
         ------
@@ -67,7 +68,10 @@ class MarkerFrames:
             unknown = self._plan(tuple(names))
         if self._twice:
             self._counts['markers: name twice in a frame'] += self._twice
-        return _scattered(array, self._rows, self._places, len(self._row)), unknown
+        target, zeros = _scattered(array, self._rows, self._places, len(self._row))
+        if zeros:
+            self._counts['markers: at 0, 0, 0, taken as not seen'] += zeros
+        return target, unknown
 
     def _plan(self, names: tuple[str, ...]) -> list[str]:
         """Find out which position goes where; return names not seen before."""
@@ -99,9 +103,14 @@ def _largest(positions: Array) -> float:
 
 
 @njit
-def _scattered(positions: Array, rows: IntArray, places: IntArray, n: int) -> Array:
-    """Positions (n, 3) whose ``rows`` are those at ``places``, the others NaN."""
+def _scattered(positions: Array, rows: IntArray, places: IntArray, n: int) -> tuple[Array, int]:
+    """Positions (n, 3) whose ``rows`` are those at ``places``, the others NaN; count of zeros."""
     target = np.full((n, 3), np.nan)
+    zeros = 0
     for i in range(rows.shape[0]):
-        target[rows[i]] = positions[places[i]]
-    return target
+        place = positions[places[i]]
+        if place[0] == 0.0 and place[1] == 0.0 and place[2] == 0.0:
+            zeros += 1
+        else:
+            target[rows[i]] = place
+    return target, zeros
