@@ -31,6 +31,8 @@ class Tracked:
         Stamp at which the recording starts [s].
     frames, events, lifts, notices : list
         `TrackedFrame`, `DetectedEvent`, `MeasuredLift` and `Notice` in order.
+    calibrated : Subject
+        The subject, scaled by its calibration.
     filter_delay : float
         Of the live frames [s].
     """
@@ -42,6 +44,7 @@ class Tracked:
     events: list
     lifts: list
     notices: list
+    calibrated: object
     filter_delay: float
 
     def live(self, name):
@@ -67,6 +70,7 @@ def track(bag: Path) -> Tracked:
             outputs += station.track(topic, message)
         for topic, _, message in reader.messages(names):
             outputs += station.track(topic.strip('/'), message)
+        calibrated = station.tracker.subject
         outputs += station.end()
 
     def of(kind):
@@ -81,6 +85,7 @@ def track(bag: Path) -> Tracked:
         of(tracked.DetectedEvent),
         of(tracked.MeasuredLift),
         of(tracked.Notice),
+        calibrated,
         frames[0].filter_delay,
     )
 
