@@ -16,6 +16,7 @@ from lifting.lift import Lift
 from lifting.prediction import Prediction
 from muscle_analyzer.core.loads.analysis import MuscleAnalysis
 from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
+from muscle_analyzer.core.loads.lumbar_moments import LumbarMoments, lumbar_moments
 from muscle_analyzer.core.loads.options import MuscleAnalyzerOptions
 from muscle_analyzer.core.loads.torque_limits import JointTorques
 
@@ -103,6 +104,11 @@ class Loads:
         """Activations and forces of the muscles."""
         a = self.analysis
         return Muscles(a.muscle_names, a.activation, a.force, a.status)
+
+    @property
+    def lumbar_moments(self) -> LumbarMoments:
+        """Parts of the net moment at each lumbar level: muscles, reserves, constraints."""
+        return lumbar_moments(self.analysis)
 
     def plot(self) -> Figure:
         """Draw the L5-S1 load with the limits; return the Matplotlib figure."""

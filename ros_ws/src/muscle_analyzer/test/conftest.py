@@ -12,6 +12,7 @@ from human_model.skeletons import Skeleton3D
 from human_model.subject import Subject
 from muscle_analyzer.core.exceptions import ModelFileError
 from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
+from muscle_analyzer.core.loads.options import MuscleAnalyzerOptions
 from muscle_analyzer.core.multibody.inverse_dynamics import add_force
 from muscle_analyzer.core.multibody.model import MultibodyModel, compile_model
 from muscle_analyzer.core.opensim_bridge.derivatives import differentiate, smooth
@@ -211,7 +212,7 @@ def box_lift():
     """Return 0.3 s of rising with a box; the left foot leaves the ground at the end."""
     subject = Subject('p01', 'male', 63.5, 1.69, 25)
     try:
-        analyzer = MuscleAnalyzer(subject)
+        analyzer = MuscleAnalyzer(subject, MuscleAnalyzerOptions().as_opensim())
     except ModelFileError as error:
         pytest.skip(str(error))
     skeleton = Skeleton3D.of(subject)

@@ -198,10 +198,10 @@ def test_weak_hip_leaves_the_spine_load_good(analyzer, skeleton):
 def test_spine_load_does_not_hang_on_how_weak_hips_are_helped(analyzer, skeleton, monkeypatch):
     """Hip reserves a hundred times as cheap take over from the muscles: same force on L5."""
 
-    def generous(names):
+    def generous(names, levels):
         return tuple(
             replace(reserve, torque=100.0) if reserve.coordinate.startswith('hip') else reserve
-            for reserve in read_reserves(names)
+            for reserve in read_reserves(names, levels=levels)
         )
 
     motion = held_posture(skeleton, POSE_3D)

@@ -47,7 +47,7 @@ def test_frame_is_the_sum_of_its_steps(lifting_multibody, motion, criterion, str
         force_length_velocity=True,
         passive_force=stretched,
         static_optimization=StaticOptimizationOptions(criterion=criterion),
-    )
+    ).as_opensim()
     solver = LoadSolver(lifting_multibody, options)
     q, qd, qdd, external = (array[2] for array in motion)
     solution = solver.solve(q, qd, qdd, external)

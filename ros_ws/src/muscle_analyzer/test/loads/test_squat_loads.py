@@ -36,7 +36,7 @@ def optimum(squats):
 @pytest.fixture(scope='module')
 def solutions(squats):
     """Solve the instants of the reference from motion and plates."""
-    solver = LoadSolver(squats.model, MuscleAnalyzerOptions())
+    solver = LoadSolver(squats.model, MuscleAnalyzerOptions().as_opensim())
     rows = [squats.sample(time) for time in STORED['times']]
     return [
         solver.solve(squats.q[k], squats.qd[k], squats.qdd[k], squats.external[k]) for k in rows

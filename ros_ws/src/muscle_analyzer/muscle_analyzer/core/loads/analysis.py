@@ -71,6 +71,15 @@ class MuscleAnalysis:
     joint_force, joint_moment : (n, n_j, 3)
         Of the lower segment on the upper one, in the joint's anatomical frame (anterior, left,
         cranial) [N, N m]; signs as at L5-S1.
+    joint_net_moment : (n, n_j, 3)
+        Moment of joint and muscles together in the same frames [N m].
+    abdomen_moment : (n, 3)
+        Of the sacrum on the abdominal body about its joint at L5-S1, in that body's frame
+        (anterior, left, cranial) [N m]: the muscles pull on it with the opposite moment.
+    lumbar_balance : str
+        Lumbar moments that the muscles balance (see `lumbar_balance.LumbarBalance`).
+    abdomen : str
+        What carries the pull on the abdominal body (see `lumbar_balance.AbdomenSupport`).
     compression_per_degree, anterior_shear_per_degree : (n,)
         Change per degree of more forward tilt of the disc frame [N / deg].
     net_moment_top_down, net_moment_bottom_up : (n, 3)
@@ -114,6 +123,10 @@ class MuscleAnalysis:
     joint_names: tuple[str, ...]
     joint_force: Array
     joint_moment: Array
+    joint_net_moment: Array
+    abdomen_moment: Array
+    lumbar_balance: str
+    abdomen: str
     compression_per_degree: Array
     anterior_shear_per_degree: Array
     net_moment_top_down: Array

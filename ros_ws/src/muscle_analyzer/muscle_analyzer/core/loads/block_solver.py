@@ -25,6 +25,7 @@ from muscle_analyzer.core.loads.block_arrays import (
     outside_wrenches,
     solved_arrays,
 )
+from muscle_analyzer.core.loads.joint_loads import ABDOMINAL
 from muscle_analyzer.core.loads.load_solver import LoadSolver
 from muscle_analyzer.core.loads.options import MuscleAnalyzerOptions
 from muscle_analyzer.core.loads.sample_status import (
@@ -61,6 +62,8 @@ class BlockSolver:
         model = subject.multibody
         self._loads = LoadSolver(model, options)
         self._disc_frame = str(self._loads.disc)
+        # The joint of the abdominal body is the last.
+        self._n_joints = len(self._loads.joint_names) - (ABDOMINAL in self._loads.joint_names)
         self._weight = GRAVITY * model.source.mass
         points, frames = subject.points.names, subject.points.frame_names
         self._places = boxed(
@@ -159,9 +162,14 @@ class BlockSolver:
             torque=loads.torque,
             reserve=loads.reserve,
             disc_frame=self._disc_frame,
-            joint_names=self._loads.joint_names,
-            joint_force=loads.joint_force,
-            joint_moment=loads.joint_moment,
+            joint_names=self._loads.joint_names[: self._n_joints],
+            joint_force=loads.joint_force[:, : self._n_joints],
+            joint_moment=loads.joint_moment[:, : self._n_joints],
+            joint_net_moment=loads.joint_net_moment[:, : self._n_joints],
+            # No joint, no moment: models without an abdominal body.
+            abdomen_moment=loads.joint_moment[:, self._n_joints :].sum(axis=1),
+            lumbar_balance=str(self._loads.lumbar_balance),
+            abdomen=str(self._loads.abdomen),
             torque_status=np.array(statuses, np.int64),
             reports=tuple(reports),
             spine_reports=tuple(spine_reports),

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Loads of all joints in anatomical frames: lumbar discs, hips, knees.
+"""Loads of all joints in anatomical frames: lumbar discs, hips, knees, abdominal body.
 
 One convention for all: the force of the *lower* segment on the *upper* one at the joint's centre,
 in a frame with x anterior, y left, z towards the head.  At L5-S1 that is the force of S1 on L5, at
@@ -10,6 +10,7 @@ pushed forward on the lower one) is -F_x, lateral shear is +F_y.
 Lumbar levels have the frames of their discs (`disc_frame`).  `bruno2015` gives every level its
 share of the lordosis; `chaffin` knows L5-S1 only, and the levels above it have those of
 `bruno2015`; `vertebral` is not turned.  Hips and knees have the axes of femur and tibia.
+The mass-less abdominal body carries muscles alone; its joint is at L5-S1.
 
 In models without lumbar vertebrae (most gait models) the joint that carries the torso stands for
 L5-S1, with the torso in place of the vertebra, and there are no other levels.
@@ -37,6 +38,8 @@ from muscle_analyzer.core.multibody.model import MultibodyModel
 
 #: The joint whose frame depends on the posture with `chaffin`.
 LUMBOSACRAL = 'l5_s1'
+#: The mass-less body that some models have, and its joint: the last of the table.
+ABDOMEN, ABDOMINAL = 'Abdomen', 'abdomen'
 #: The body above it, and what stands for that in models without vertebrae.
 L5, TORSO = 'lumbar5', 'torso'
 
@@ -87,8 +90,12 @@ def lumbosacral_body(model: MultibodyModel) -> str:
 
 
 def loaded_joints(model: MultibodyModel) -> tuple[LoadedJoint, ...]:
-    """Return the rows of the table for a model, those of vertebrae only if it has some."""
-    joints = read_loaded_joints()
+    """Return the rows of the table for a model, those of vertebrae and abdomen if it has them."""
+    joints = tuple(
+        joint
+        for joint in read_loaded_joints()
+        if joint.body != ABDOMEN or ABDOMEN in model.body_names
+    )
     body = lumbosacral_body(model)
     if body == L5:
         return joints

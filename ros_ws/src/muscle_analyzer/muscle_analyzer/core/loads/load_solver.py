@@ -20,6 +20,12 @@ from muscle_analyzer.core.boxed_tuple import boxed
 from muscle_analyzer.core.exceptions import InputArrayError
 from muscle_analyzer.core.loads.disc_frame import DiscLoad, disc_option, disc_setting
 from muscle_analyzer.core.loads.joint_loads import JointLoad, JointLoadFrames, lumbosacral_body
+from muscle_analyzer.core.loads.lumbar_balance import (
+    LumbarBalance,
+    abdomen_support,
+    balanced_model,
+    lumbar_balance,
+)
 from muscle_analyzer.core.loads.options import MuscleAnalyzerOptions
 from muscle_analyzer.core.loads.sample import solve_samples
 from muscle_analyzer.core.loads.sample_data import (
@@ -39,9 +45,6 @@ from muscle_analyzer.core.recruitment.weights import least_activations, muscle_w
 #: Bodies and coordinates of the lifting full-body model that the analysis asks for.
 ROOT, THORAX = 'pelvis', 'torso'
 KNEES = ('knee_angle_r', 'knee_angle_l')
-ROOT_COORDINATES = 'pelvis_'
-#: Coordinates of the lumbar joints: every muscle that crosses L5-S1 works on them.
-LUMBAR_COORDINATES = 'L5_S1_'
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,9 +87,14 @@ class LoadSolver:
     Parameters
     ----------
     model
-        The subject's model.
+        The subject's model; states are those of its coordinates.
     options
         Settings.
+
+    Attributes
+    ----------
+    model : MultibodyModel
+        The model whose coordinates are balanced (see `lumbar_balance.balanced_model`).
 
     Raises
     ------
@@ -97,34 +105,40 @@ class LoadSolver:
     """
 
     def __init__(self, model: MultibodyModel, options: MuscleAnalyzerOptions) -> None:
-        self.model = model
         self.disc = disc_option(options.disc_frame)
-        names = model.coordinate_names
-        balanced = [k for k, name in enumerate(names) if not name.startswith(ROOT_COORDINATES)]
+        self.lumbar_balance = lumbar_balance(options.lumbar_balance)
+        self.abdomen = abdomen_support(options.abdomen)
+        free = balanced_model(model, self.lumbar_balance, self.abdomen)
+        model = self.model = free.model
+        names, balanced = model.coordinate_names, free.balanced
         row = np.full(len(names), -1, np.int64)
         row[balanced] = np.arange(len(balanced))
         self.muscle_names = tuple(muscle.name for muscle in model.source.muscles)
         self.coordinate_names = tuple(names[k] for k in balanced)
-        self.lumbar = tuple(name for name in names if name.startswith(LUMBAR_COORDINATES))
+        self.lumbar = free.lumbar
+        levels = self.lumbar_balance is LumbarBalance.LEVELS
         muscles = MuscleParameters.of(model.source.muscles)
         frames = JointLoadFrames(model, self.disc)
         self.joint_names = frames.names
         self.lumbosacral = frames.joints.lumbosacral
         self.optimization = StaticOptimization(
             self.muscle_names,
-            read_reserves(self.coordinate_names),
+            read_reserves(self.coordinate_names, levels=levels),
             options.static_optimization,
             muscle_weights(muscles, options.muscle_weighting),
             least_activations(self.muscle_names, options.abdominal_activation),
         )
         self.sample_model = SampleModel(
+            source=free.source,
+            gain=free.gain,
+            offset=free.offset,
             tree=model.tree,
             paths=path_table(model, options.geodesic_wrapping),
             muscles=muscles,
             actuators=self.optimization.actuators,
             joints=frames.joints,
             disc=disc_setting(self.disc),
-            balanced=np.array(balanced, np.int64),
+            balanced=balanced,
             row=row,
             root=model.body_index(ROOT),
             lumbosacral=model.body_index(lumbosacral_body(model)),

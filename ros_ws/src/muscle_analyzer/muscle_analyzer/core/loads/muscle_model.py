@@ -68,6 +68,7 @@ class MuscleModel:
     subject : Subject, optional
         Without a subject the model is the generic one.
     options : MuscleAnalyzerOptions, optional
+        Lumbar balance and abdomen are always those of OpenSim.
 
     Attributes
     ----------
@@ -85,7 +86,8 @@ class MuscleModel:
     def __init__(
         self, subject: Subject | None = None, options: MuscleAnalyzerOptions | None = None
     ) -> None:
-        options = options or MuscleAnalyzerOptions()
+        # Its coordinates are those of the model's file, coupled as in OpenSim.
+        options = (options or MuscleAnalyzerOptions()).as_opensim()
         generic = read_generic_model(options)
         if subject is None:
             self._multibody = compile_model(generic)

@@ -2,10 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Settings of the muscle analysis."""
 
-from dataclasses import dataclass, field
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from muscle_analyzer.core.loads.disc_frame import DEFAULT_OPTION
+from muscle_analyzer.core.loads.lumbar_balance import AbdomenSupport, LumbarBalance
 from muscle_analyzer.core.recruitment.static_optimization import StaticOptimizationOptions
 from muscle_analyzer.core.recruitment.weights import MuscleWeighting
 from muscle_analyzer.core.subject.muscle_strength import StrengthOptions, StrengthScaling
@@ -22,6 +25,10 @@ class MuscleAnalyzerOptions:
         Generic model; None is the lifting full-body model of the pose2sim wheel.
     disc_frame
         Source of the orientation of the L5-S1 disc (see `disc_frame`).
+    lumbar_balance
+        Lumbar moments that the muscles balance (see `lumbar_balance.LumbarBalance`).
+    abdomen
+        What carries the pull on the abdominal body (see `lumbar_balance.AbdomenSupport`).
     force_length_velocity
         Whether muscles are weaker away from their optimal length and when they shorten; off, as
         in the reference, they have their isometric force everywhere.
@@ -50,6 +57,8 @@ class MuscleAnalyzerOptions:
 
     model_path: Path | None = None
     disc_frame: str = DEFAULT_OPTION
+    lumbar_balance: str = LumbarBalance.COUPLED
+    abdomen: str = AbdomenSupport.RHYTHM
     force_length_velocity: bool = False
     passive_force: bool = False
     geodesic_wrapping: bool = False
@@ -62,6 +71,10 @@ class MuscleAnalyzerOptions:
     static_optimization: StaticOptimizationOptions = field(
         default_factory=StaticOptimizationOptions
     )
+
+    def as_opensim(self) -> MuscleAnalyzerOptions:
+        """Return the options with the lumbar balance of OpenSim."""
+        return replace(self, lumbar_balance=LumbarBalance.COUPLED, abdomen=AbdomenSupport.RHYTHM)
 
     @property
     def muscle_strength(self) -> StrengthOptions:

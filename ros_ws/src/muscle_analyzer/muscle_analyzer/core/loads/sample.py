@@ -38,6 +38,16 @@ def _copy(source: Array, target: Array, k: int) -> None:
 
 
 @kernel
+def _follow(model: SampleModel, workspace: Workspace, q: Array, qd: Array, qdd: Array) -> None:
+    """Fill the coordinates of the balanced model from those of the coupled model."""
+    for i in range(model.source.size):
+        gain = model.gain[i]
+        workspace.q[i] = gain * q[model.source[i]] + model.offset[i]
+        workspace.qd[i] = gain * qd[model.source[i]]
+        workspace.qdd[i] = gain * qdd[model.source[i]]
+
+
+@kernel
 def _muscle_strength(model: SampleModel, workspace: Workspace, qd: Array) -> None:
     """Fill the muscle forces per unit activation and without activation."""
     if not model.force_length_velocity:
@@ -57,9 +67,7 @@ def _muscle_strength(model: SampleModel, workspace: Workspace, qd: Array) -> Non
 
 
 @kernel
-def compute_joint_torques(
-    model: SampleModel, workspace: Workspace, q: Array, qd: Array, qdd: Array, external: Array
-) -> int:
+def compute_joint_torques(model: SampleModel, workspace: Workspace, external: Array) -> int:
     """Compute joint torques, muscle paths and muscle strength of one sample.
 
     Parameters
@@ -67,9 +75,7 @@ def compute_joint_torques(
     model
         The model.
     workspace
-        Receives the results.
-    q, qd, qdd : (n_q,)
-        Independent coordinates, rates and accelerations [rad or m, per s, per s^2].
+        Has the coordinates of the balanced model; receives the results.
     external : (n_b, 6)
         Wrenches on the bodies from outside (see `inverse_dynamics.add_force`).
 
@@ -78,6 +84,7 @@ def compute_joint_torques(
     int
         First coordinate whose torque or moment arms are not finite, or -1.
     """
+    q, qd, qdd = workspace.q, workspace.qd, workspace.qdd
     compute_kinematics(model.tree, q, qd, qdd, workspace.kinematics, workspace.state)
     compute_inverse_dynamics(model.tree, workspace.state, external, workspace.dynamics)
     compute_muscle_paths(model.paths, workspace.state, workspace.path_workspace, workspace.paths)
@@ -110,7 +117,7 @@ def compute_joint_torques(
 
 @kernel
 def compute_sample_loads(
-    model: SampleModel, workspace: Workspace, q: Array, out: SampleLoads, k: int
+    model: SampleModel, workspace: Workspace, out: SampleLoads, k: int
 ) -> None:
     """Compute muscle forces, joint reactions and net moments of sample k.
 
@@ -120,8 +127,6 @@ def compute_sample_loads(
         The model.
     workspace
         After `compute_joint_torques` of the sample.
-    q : (n_q,)
-        Coordinates of the sample.
     out
         Has the activations; receives forces, reactions and net moments.
     k
@@ -137,7 +142,7 @@ def compute_sample_loads(
         paths.body_start, paths.body_index, workspace.paths.wrench, workspace.force, reaction
     )
     compute_joint_reactions(model.tree, joint_wrench, reaction)
-    knee = 0.5 * (q[model.knees[0]] + q[model.knees[1]])
+    knee = 0.5 * (workspace.q[model.knees[0]] + workspace.q[model.knees[1]])
     turn_disc(model.disc, state.rotation[l5], state.rotation[model.thorax], knee, workspace.disc)
     for i in range(3):
         for j in range(3):
@@ -146,6 +151,10 @@ def compute_sample_loads(
     joint_loads(
         model.joints, reaction, state.joint_position, state.rotation, workspace.disc,
         out.joint_force[k], out.joint_moment[k],
+    )  # fmt: skip
+    joint_loads(
+        model.joints, joint_wrench, state.joint_position, state.rotation, workspace.disc,
+        workspace.net_force, out.joint_net_moment[k],
     )  # fmt: skip
     centre = state.joint_position[l5]
     refer_wrench(joint_wrench[l5], centre, workspace.net[0])
@@ -203,9 +212,10 @@ def solve_samples(
     """
     model, workspace = boxed.content
     for k in range(q.shape[0]):
-        out.wrong[k] = compute_joint_torques(model, workspace, q[k], qd[k], qdd[k], external[k])
+        _follow(model, workspace, q[k], qd[k], qdd[k])
+        out.wrong[k] = compute_joint_torques(model, workspace, external[k])
         _copy(workspace.torque, out.torque, k)
         _copy(workspace.to_balance, out.to_balance, k)
         if out.wrong[k] < 0:
             _recruit(model.actuators, workspace, warm_start, out, k)
-            compute_sample_loads(model, workspace, q[k], out, k)
+            compute_sample_loads(model, workspace, out, k)

@@ -30,6 +30,8 @@ class SampleModel(NamedTuple):
 
     Attributes
     ----------
+    source, gain, offset : (n_x,)
+        See `lumbar_balance.BalancedModel`.
     tree : Tree
     paths : PathTable
     muscles : MuscleParameters
@@ -38,7 +40,7 @@ class SampleModel(NamedTuple):
     disc : DiscSetting
     balanced : (n_c,) int
         Independent coordinates whose torques muscles and reserves balance.
-    row : (n_q,) int
+    row : (n_x,) int
         Place of each independent coordinate among them, or -1.
     root, lumbosacral, thorax : int
         Numbers of the bodies.
@@ -48,6 +50,9 @@ class SampleModel(NamedTuple):
         Whether lengths and velocities change muscle strength, and stretched fibres resist.
     """
 
+    source: IntArray
+    gain: Array
+    offset: Array
     tree: Tree
     paths: PathTable
     muscles: MuscleParameters
@@ -69,6 +74,8 @@ class Workspace(NamedTuple):
 
     Attributes
     ----------
+    q, qd, qdd : (n_x,)
+        Coordinates of the balanced model, rates and accelerations.
     kinematics : KinematicsWorkspace
     state : BodyState
     dynamics : InverseDynamics
@@ -92,8 +99,13 @@ class Workspace(NamedTuple):
         Ground <- L5-S1 disc.
     net : (2, 6)
         Wrenches at L5-S1: of what it carries, and of what is left over at the root.
+    net_force : (n_j, 3)
+        Net forces at the joints [N].
     """
 
+    q: Array
+    qd: Array
+    qdd: Array
     kinematics: KinematicsWorkspace
     state: BodyState
     dynamics: InverseDynamics
@@ -109,15 +121,19 @@ class Workspace(NamedTuple):
     reaction: Array
     disc: Array
     net: Array
+    net_force: Array
 
 
 def allocate_workspace(model: SampleModel) -> Workspace:
     """Return the workspace of a model."""
     n_b, n_m, n_c = model.tree.parent.size, model.actuators.lower.size, model.balanced.size
-    n_k = model.paths.crossed_index.size
+    n_k, n_x = model.paths.crossed_index.size, model.source.size
     kinematics, state = allocate_kinematics(model.tree)
     path_workspace, paths = allocate_paths(model.paths, n_b)
     return Workspace(
+        q=np.empty(n_x),
+        qd=np.empty(n_x),
+        qdd=np.empty(n_x),
         kinematics=kinematics,
         state=state,
         dynamics=allocate_dynamics(model.tree),
@@ -133,6 +149,7 @@ def allocate_workspace(model: SampleModel) -> Workspace:
         reaction=np.empty((n_b, 6)),
         disc=np.empty((3, 3)),
         net=np.empty((2, 6)),
+        net_force=np.empty((model.joints.body.size, 3)),
     )
 
 
@@ -162,6 +179,8 @@ class SampleLoads(NamedTuple):
         Rotation ground <- L5-S1 disc, and in the last column the joint's centre [m].
     joint_force, joint_moment : (n, n_j, 3)
         Loads of all joints in their anatomical frames [N, N m]; L5-S1's are those of its disc.
+    joint_net_moment : (n, n_j, 3)
+        Net moments, of joint and muscles together, in the same frames [N m].
     net_moment : (n, 2, 3)
         Net moment at L5-S1, top-down and bottom-up [N m].
     pelvis_residual : (n, 6)
@@ -184,6 +203,7 @@ class SampleLoads(NamedTuple):
     disc_pose: Array
     joint_force: Array
     joint_moment: Array
+    joint_net_moment: Array
     net_moment: Array
     pelvis_residual: Array
 
@@ -203,7 +223,10 @@ class SampleLoads(NamedTuple):
     def discard_dynamics(self, samples: list[int]) -> None:
         """Set to NaN the results that depend on motion and external forces alone."""
         if samples:
-            for array in (self.torque, self.net_moment, self.pelvis_residual, self.disc_pose):
+            for array in (
+                self.torque, self.joint_net_moment, self.net_moment, self.pelvis_residual,
+                self.disc_pose,
+            ):  # fmt: skip
                 array[samples] = np.nan
 
     def discard_muscles(self, samples: list[int]) -> None:
@@ -235,6 +258,7 @@ def allocate_loads(model: SampleModel, n: int) -> SampleLoads:
         disc_pose=np.empty((n, 3, 4)),
         joint_force=np.empty((n, n_j, 3)),
         joint_moment=np.empty((n, n_j, 3)),
+        joint_net_moment=np.empty((n, n_j, 3)),
         net_moment=np.empty((n, 2, 3)),
         pelvis_residual=np.empty((n, 6)),
     )

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from human_model.typing import Array
 from muscle_analyzer.core.loads.disc_frame import disc_load
 from muscle_analyzer.core.loads.joint_loads import lumbosacral_body
-from muscle_analyzer.core.loads.load_solver import ROOT_COORDINATES
+from muscle_analyzer.core.loads.lumbar_balance import ROOT_COORDINATES
 from muscle_analyzer.core.loads.options import MuscleAnalyzerOptions
 from muscle_analyzer.core.opensim_bridge.motion_on_model import MotionOnModel
 from muscle_analyzer.core.opensim_bridge.own_results import OwnSide

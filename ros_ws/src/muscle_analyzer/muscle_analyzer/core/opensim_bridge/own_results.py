@@ -40,6 +40,7 @@ class OwnSide:
     ----------
     motion : MotionOnModel
     options : MuscleAnalyzerOptions
+        The lumbar balance is always that of OpenSim.
 
     Raises
     ------
@@ -49,8 +50,9 @@ class OwnSide:
 
     def __init__(self, motion: MotionOnModel, options: MuscleAnalyzerOptions) -> None:
         self.motion = motion
-        self._options = options
-        self._solver = LoadSolver(motion.model, options)
+        # OpenSim balances the coupled coordinates.
+        self._options = options.as_opensim()
+        self._solver = LoadSolver(motion.model, self._options)
         self.muscle_names = self._solver.muscle_names
         self.coordinate_names = self._solver.coordinate_names
         names = motion.model.coordinate_names

@@ -20,10 +20,8 @@ from muscle_analyzer.core.recruitment.min_max import SQUARES_WEIGHT, solve_min_m
 #: the net moment of its joint, all coordinates of the joint together: half of what OpenSim's guide
 #: allows (page "Reserves and Residuals": peak reserve below 10 % of the peak joint torque), and
 #: the fraction of the external force that Hicks et al. 2015 (J Biomech Eng 137:020905, section
-#: 3.1.3) allow residual forces ...
+#: 3.1.3) allow residual forces, and more than its limit (`Actuators.limit`).
 RESERVE_FRACTION = 0.05
-#: ... and more than its unit torque, below which a fraction means nothing.
-RESERVE_CONTROL = 1.0
 
 
 class Actuators(NamedTuple):
@@ -35,6 +33,8 @@ class Actuators(NamedTuple):
         Torque of each reserve at unit control [N m].
     muscle_driven : (n_c,) bool
         Whether muscles must balance the coordinate.
+    limit : (n_c,)
+        Torque of a reserve [N m] below which a fraction of the net moment means nothing.
     joint : (n_c,) int
         Number of the joint that the coordinate belongs to.
     lower, upper, weight : (n_m,)
@@ -51,6 +51,7 @@ class Actuators(NamedTuple):
 
     unit: Array
     muscle_driven: BoolArray
+    limit: Array
     joint: IntArray
     lower: Array
     upper: Array
@@ -210,7 +211,7 @@ def _set_reserves(
         weak[j] = (
             actuators.muscle_driven[j]
             and abs(reserve[j]) > RESERVE_FRACTION * np.sqrt(squares[actuators.joint[j]])
-            and abs(control) > RESERVE_CONTROL
+            and abs(reserve[j]) > actuators.limit[j]
         )
 
 

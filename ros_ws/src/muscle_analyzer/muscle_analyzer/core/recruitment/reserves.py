@@ -11,9 +11,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from human_model.tables import read_table
+from human_model.tables import Row, read_table
 from muscle_analyzer.core.exceptions import OptionError
 
+#: Columns of both tables.
+COLUMNS = 'coordinate joint torque driven_by'
 #: Values of the column that distinguishes muscle-driven coordinates from others.
 _DRIVERS = {'muscles': True, 'reserve': False}
 
@@ -32,33 +34,47 @@ class Reserve:
         Torque at unit control [N m, or N for a translation].
     muscle_driven
         Whether muscles must balance the coordinate; if not, the reserve may.
+    limit
+        Largest torque of the reserve that is not reported as weakness of the muscles [N m]; the
+        torque at unit control if None.
     """
 
     coordinate: str
     joint: str
     torque: float
     muscle_driven: bool
+    limit: float | None = None
 
 
-def read_reserves(coordinate_names: tuple[str, ...]) -> tuple[Reserve, ...]:
+def read_reserves(coordinate_names: tuple[str, ...], levels: bool = False) -> tuple[Reserve, ...]:
     """Read the reserves of the given coordinates of a model.
+
+    Parameters
+    ----------
+    coordinate_names
+    levels
+        Whether each lumbar level is balanced: its coordinates then have the reserves of
+        ``level_reserves.csv``.
 
     Raises
     ------
     OptionError
         If a coordinate has no row.
     """
-    columns = 'coordinate joint torque driven_by'
     rows = {
-        row['coordinate']: Reserve(
-            row['coordinate'],
-            row['joint'],
-            row.number('torque'),
-            row.choice('driven_by', _DRIVERS),
-        )
-        for row in read_table('muscle_analyzer', 'reserves.csv', columns)
+        row['coordinate']: _reserve(row)
+        for row in read_table('muscle_analyzer', 'reserves.csv', COLUMNS)
     }
+    if levels:
+        for row in read_table('muscle_analyzer', 'level_reserves.csv', f'{COLUMNS} limit'):
+            rows[row['coordinate']] = _reserve(row, row.number('limit'))
     missing = [name for name in coordinate_names if name not in rows]
     if missing:
         raise OptionError(f'reserves.csv: no reserve for the coordinates {", ".join(missing)}')
     return tuple(rows[name] for name in coordinate_names)
+
+
+def _reserve(row: Row, limit: float | None = None) -> Reserve:
+    """Return the reserve of a row of a table."""
+    driven = row.choice('driven_by', _DRIVERS)
+    return Reserve(row['coordinate'], row['joint'], row.number('torque'), driven, limit)

@@ -184,6 +184,9 @@ class StaticOptimization:
         self.actuators = Actuators(
             unit=np.array([reserve.torque for reserve in reserves], np.float64),
             muscle_driven=np.array([reserve.muscle_driven for reserve in reserves], np.bool_),
+            limit=np.array(
+                [r.torque if r.limit is None else r.limit for r in reserves], np.float64
+            ),
             joint=np.array([joints.index(reserve.joint) for reserve in reserves], np.int64),
             lower=lower,
             upper=np.full(len(muscle_names), high, np.float64),
