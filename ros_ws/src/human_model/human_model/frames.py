@@ -57,35 +57,6 @@ def to_opensim(vector: npt.ArrayLike) -> Array:
     return _vectors(vector) @ ROS_FROM_OPENSIM
 
 
-def rotation_from_opensim(rotation: npt.ArrayLike) -> Array:
-    """Turn rotation matrices (or inertia tensors) (..., 3, 3) from OpenSim's axes into REP-103.
-
-    Both the frame it turns from and the one it turns to are renamed: ``M R M^T``.
-    """
-    return ROS_FROM_OPENSIM @ _matrices(rotation) @ ROS_FROM_OPENSIM.T
-
-
-def rotation_to_opensim(rotation: npt.ArrayLike) -> Array:
-    """Turn rotation matrices (..., 3, 3) from REP-103 axes into OpenSim's."""
-    return ROS_FROM_OPENSIM.T @ _matrices(rotation) @ ROS_FROM_OPENSIM
-
-
-def wrench_from_opensim(wrench: npt.ArrayLike) -> Array:
-    """Turn wrenches (..., 6), force [N] then moment [N m], from OpenSim's axes into REP-103."""
-    array = np.asarray(wrench, dtype=np.float64)
-    if array.ndim == 0 or array.shape[-1] != 6:
-        raise HumanModelError(f'wrench: last axis must have length 6, got shape {array.shape}')
-    return np.concatenate([from_opensim(array[..., :3]), from_opensim(array[..., 3:])], axis=-1)
-
-
-def wrench_to_opensim(wrench: npt.ArrayLike) -> Array:
-    """Turn wrenches (..., 6), force [N] then moment [N m], from REP-103 axes into OpenSim's."""
-    array = np.asarray(wrench, dtype=np.float64)
-    if array.ndim == 0 or array.shape[-1] != 6:
-        raise HumanModelError(f'wrench: last axis must have length 6, got shape {array.shape}')
-    return np.concatenate([to_opensim(array[..., :3]), to_opensim(array[..., 3:])], axis=-1)
-
-
 def matrix_from_quaternion(quaternion: npt.ArrayLike) -> Array:
     """Rotation matrices (..., 3, 3) of quaternions (..., 4) xyzw, which are normalised first.
 

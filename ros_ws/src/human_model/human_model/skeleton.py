@@ -156,10 +156,6 @@ class Skeleton:
         """Positions (n, n_p, 3) [m] of the shared points for coordinates (n, n_q)."""
         return self.points_and_frames(q)[0]
 
-    def frame_array(self, q: npt.ArrayLike) -> Array:
-        """Quaternions (n, n_f, 4) xyzw of the shared frames for coordinates (n, n_q)."""
-        return self.points_and_frames(q)[1]
-
     def points_and_frames(self, q: npt.ArrayLike) -> tuple[Array, Array]:
         """Return both: points (n, n_p, 3) [m] and frames (n, n_f, 4) for coordinates (n, n_q)."""
         block = self._block('q', q)

@@ -50,12 +50,6 @@ def peak(x: Any, centre: Any, width: Any) -> Any:
     return 4.0 / (2.0 + _exp(u) + _exp(-u))
 
 
-def peak_slope(x: Array, centre: float, width: float) -> Array:
-    """Differentiate `peak` with respect to x."""
-    u = (np.asarray(x, dtype=np.float64) - centre) / width
-    return np.asarray(-peak(u, 0.0, 1.0) * np.tanh(u / 2.0) / width)
-
-
 def surface(coefficients: Any, q: Any, v: Any) -> Any:
     """Peak torque of equation 2.14 (or 2.17), in the unit of the coefficients.
 
@@ -75,16 +69,6 @@ def surface(coefficients: Any, q: Any, v: Any) -> Any:
         + coefficients[1] * angle
         + coefficients[4] * speed
         + coefficients[7] * angle * speed
-    )
-
-
-def surface_gradient(coefficients: npt.ArrayLike, q: Array, v: Array) -> tuple[Array, Array]:
-    """Differentiate `surface` with respect to q and to v."""
-    c = np.asarray(coefficients, dtype=np.float64)
-    angle, speed = peak(np.asarray(q), c[2], c[3]), peak(np.asarray(v), c[5], c[6])
-    return (
-        np.asarray((c[1] + c[7] * speed) * peak_slope(q, c[2], c[3])),
-        np.asarray((c[4] + c[7] * angle) * peak_slope(v, c[5], c[6])),
     )
 
 

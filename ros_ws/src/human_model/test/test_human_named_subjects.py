@@ -4,9 +4,10 @@
 
 import numpy as np
 import pytest
+from thesis_parameters import named_parameters
 
 from human_model.exceptions import SubjectError
-from human_model.named_subjects import named_parameters, named_subject, subject_names
+from human_model.named_subjects import named_subject, subject_names
 from human_model.skeletons import Skeleton2D, Skeleton3D
 
 TABLE_2_2 = {  # link: length [m], mass [kg], Izz about the proximal joint [kg m^2]

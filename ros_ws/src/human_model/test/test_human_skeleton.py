@@ -70,7 +70,7 @@ def test_sagittal_and_full_skeleton_agree_in_the_plane(man):
 
 def test_frames_are_those_of_their_segments(skeleton, rng):
     q = rng.normal(size=(3, len(skeleton.coordinates)))
-    quaternions = skeleton.frame_array(q)
+    quaternions = skeleton.points_and_frames(q)[1]
     assert quaternions.shape == (3, len(FRAMES), 4)
     for k in range(3):
         frames = skeleton.forward(q[k])

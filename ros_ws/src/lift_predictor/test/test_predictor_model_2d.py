@@ -8,8 +8,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from thesis_parameters import named_parameters
 
-from human_model.named_subjects import named_parameters, named_subject
+from human_model.named_subjects import named_subject
 from human_model.skeleton import ExternalForce
 from human_model.strength import JointStrength, coefficient_sets
 from human_model.subject import Subject

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from human_model.frames import (
+    ROS_FROM_OPENSIM,
     from_opensim,
     matrix_from_quaternion,
     quaternion_from_matrix,
-    rotation_from_opensim,
 )
 from human_model.skeletons import Skeleton2D, Skeleton3D
 from human_model.subject import Subject
@@ -261,8 +261,8 @@ def test_sagittal_motion_may_stand_anywhere(scaled, subject, heading):
         forward_kinematics(scaled.multibody.tree, p.q, p.qd, p.qdd) for p in (here, there)
     )
     np.testing.assert_allclose(
-        rotation_from_opensim(second.rotation[thorax]),
-        turn @ rotation_from_opensim(first.rotation[thorax]),
+        ROS_FROM_OPENSIM @ second.rotation[thorax],
+        turn @ ROS_FROM_OPENSIM @ first.rotation[thorax],
         atol=1e-4,
     )
     np.testing.assert_allclose(
