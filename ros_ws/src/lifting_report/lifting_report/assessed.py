@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 
 from injury_monitor import conversions
+from injury_monitor.core.assessment import Criterion
 from injury_monitor.core.exceptions import InjuryMonitorError
 from injury_monitor.core.limits import Zone
 from injury_monitor.core.rnle_assessment import assess_lifting
-from lifting_report.report_data import CriterionRow, Lifting, Missing, Risk
+from lifting_report.report_data import Lifting, Missing, Risk
 
 
 def risk_from_assessment(message: Any) -> Risk:
@@ -37,7 +38,7 @@ def risk_from_assessment(message: Any) -> Risk:
     rows = []
     for name, source, value, limit, margin, unit, limit_source, time in zip(*columns, strict=True):
         rows.append(
-            CriterionRow(
+            Criterion(
                 name,
                 source,
                 float(value),
@@ -46,6 +47,7 @@ def risk_from_assessment(message: Any) -> Risk:
                 unit,
                 limit_source,
                 float(time),
+                float(value) / message.body_mass if unit == 'N' else math.nan,
                 _detail(message, name, source),
             )
         )

@@ -1,27 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the report says of a lift in numbers: criteria, alarms, quality, solve reports."""
+"""Numbers of a lift in the report: assessment, alarms, quality, solve reports."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from injury_monitor.core.assessment import Criterion
 from muscle_analyzer.core.emg.comparison import EmgMatch
-
-
-@dataclass(frozen=True)
-class CriterionRow:
-    """One peak against one limit; see ``injury_monitor.core.assessment.Criterion``."""
-
-    criterion: str
-    source: str
-    value: float
-    limit: float
-    margin: float
-    unit: str
-    limit_source: str
-    time: float
-    detail: str = ''
 
 
 @dataclass(frozen=True)
@@ -55,7 +41,7 @@ class Risk:
 
     Attributes
     ----------
-    criteria : tuple of CriterionRow
+    criteria : tuple of Criterion
     avoidable_compression, avoidable_shear : float
         Measured minus predicted peak [N]; NaN without a prediction.
     zone : str
@@ -64,14 +50,14 @@ class Risk:
     samples_left_out : int
     """
 
-    criteria: tuple[CriterionRow, ...]
+    criteria: tuple[Criterion, ...]
     avoidable_compression: float
     avoidable_shear: float
     zone: str
     summary: str
     samples_left_out: int
 
-    def find(self, name: str, source: str) -> CriterionRow | None:
+    def find(self, name: str, source: str) -> Criterion | None:
         """Return the first criterion whose name begins with ``name``, or None."""
         for row in self.criteria:
             if row.criterion.startswith(name) and row.source == source:

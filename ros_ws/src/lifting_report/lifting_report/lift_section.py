@@ -9,12 +9,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from human_model.constants import GRAVITY
+from injury_monitor.core.assessment import Criterion
 from lifting_report.emg_page import emg_drawing
 from lifting_report.figures import curves, joint_peaks, loads, stick_figures
 from lifting_report.figures.loads import LimitLine
 from lifting_report.pages import LIFT_NAMES, Card, Drawing, amount, criterion_name, drawing
 from lifting_report.report_data import (
-    CriterionRow,
     Header,
     LiftReport,
     Missing,
@@ -69,7 +69,7 @@ def shown_lift(lift: LiftReport, data: ReportData, name: str) -> ShownLift:
         ZONES[zone],
         LEVELS[zone],
         _overview(lift, data, ZONES[zone]),
-        () if isinstance(risk, Missing) else _cards(risk, data.header),
+        () if isinstance(risk, Missing) else _cards(risk),
         _drawings(lift, data.header, name),
         None if emg is None else emg_drawing(emg.matches, f'{name}-emg'),
     )
@@ -95,12 +95,12 @@ def _overview(lift: LiftReport, data: ReportData, zone: str) -> list[str]:
     return [*row, zone, str(sum(alarm.lift_id == lift.lift_id for alarm in active))]
 
 
-def _cards(risk: Risk, header: Header) -> tuple[Card, ...]:
+def _cards(risk: Risk) -> tuple[Card, ...]:
     """Return the cards: compression, shear, torque index, activation index."""
     compression, shear = risk.avoidable_compression, risk.avoidable_shear
     return (
-        _force_card('Peak L5-S1 compression', risk, 'compression_action', header, compression),
-        _force_card('Peak L5-S1 anterior shear', risk, 'shear_', header, shear),
+        _force_card('Peak L5-S1 compression', risk, 'compression_action', compression),
+        _force_card('Peak L5-S1 anterior shear', risk, 'shear_', shear),
         _index_card('Joint torque index', risk, 'torque_index'),
         _index_card('Activation index', risk, 'activation_index'),
     )
@@ -110,7 +110,7 @@ def _judged(margin: float) -> tuple[str, str]:
     return ('action', 'at or above the limit') if margin <= 0.0 else ('good', 'below the limit')
 
 
-def _force_card(what: str, risk: Risk, name: str, header: Header, avoidable: float) -> Card:
+def _force_card(what: str, risk: Risk, name: str, avoidable: float) -> Card:
     measured, predicted = risk.find(name, 'measured'), risk.find(name, 'predicted')
     if measured is None or math.isnan(measured.value):
         return Card(what, '–', 'not available: no solved sample of the recorded lift', '')
@@ -121,19 +121,17 @@ def _force_card(what: str, risk: Risk, name: str, header: Header, avoidable: flo
         (criterion_name(measured), amount(measured.limit, measured.unit)),
         ('margin', amount(measured.margin, measured.unit)),
         ('reached', f'{amount(measured.time, "s", 2)} after the start'),
-        *_optimal_rows(predicted, header, avoidable),
+        *_optimal_rows(predicted, avoidable),
     )
-    per_kilogram = amount(measured.value / header.mass, 'N/kg', 1)
+    per_kilogram = amount(measured.per_kilogram, 'N/kg', 1)
     value = amount(measured.value, measured.unit)
     return Card(what, value, verdict, level, rows, per_kilogram, 'avoidable')
 
 
-def _optimal_rows(
-    predicted: CriterionRow | None, header: Header, avoidable: float
-) -> list[tuple[str, str]]:
+def _optimal_rows(predicted: Criterion | None, avoidable: float) -> list[tuple[str, str]]:
     if predicted is None or math.isnan(predicted.value):
         return [('optimal lift', 'not available')]
-    per_kilogram = amount(predicted.value / header.mass, 'N/kg', 1)
+    per_kilogram = amount(predicted.per_kilogram, 'N/kg', 1)
     rows = [('optimal lift', f'{amount(predicted.value, predicted.unit)} ({per_kilogram})')]
     if avoidable > 0.0:
         rows.append(('avoidable', amount(avoidable, predicted.unit)))

@@ -12,9 +12,10 @@ from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+from injury_monitor.core.assessment import Criterion
 from injury_monitor.core.lifting_equation import lifting_index_band
 from lifting_report.model_limits import MODEL_LIMITS
-from lifting_report.report_data import CriterionRow, Missing
+from lifting_report.report_data import Missing
 from muscle_analyzer.core.emg.comparison import EmgMatch
 from muscle_analyzer.core.emg.envelopes import GIVEN_MVC
 
@@ -85,7 +86,7 @@ def short(value: float) -> str:
     return _DASH if math.isnan(value) else f'{value:.3g}'.replace('-', '−')
 
 
-def criterion_name(row: CriterionRow) -> str:
+def criterion_name(row: Criterion) -> str:
     """Return the name of a criterion in words."""
     return CRITERIA.get(row.criterion, row.criterion.replace('_', ' '))
 

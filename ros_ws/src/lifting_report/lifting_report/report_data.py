@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a report is made of: plain arrays and names, independent of the rooms they come from.
+"""Data of a report: arrays and names, without messages.
 
-Every part of a lift may be :class:`Missing`; the page then says why instead of leaving it out.
+Every part of a lift may be :class:`Missing`; the page then contains the reason.
 All times are seconds since the start of the lift unless said otherwise, all forces newtons.
 """
 
@@ -17,7 +17,6 @@ from human_model.typing import Array, BoolArray
 from lifting_report.exceptions import ReportError
 from lifting_report.findings import (
     AlarmRow,
-    CriterionRow,
     EmgFindings,
     Lifting,
     QualityRow,
@@ -31,7 +30,6 @@ __all__ = [
     'AlarmRow',
     'BodyPoints',
     'Comparison',
-    'CriterionRow',
     'EmgFindings',
     'GroundForces',
     'Header',

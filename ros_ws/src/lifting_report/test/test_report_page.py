@@ -10,6 +10,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
+from injury_monitor.core.assessment import Criterion
 from lifting_report import build_report
 from lifting_report.exceptions import ReportError
 from lifting_report.figures.loads import muscle_groups
@@ -19,7 +20,6 @@ from lifting_report.report_data import (
     AlarmRow,
     BodyPoints,
     Comparison,
-    CriterionRow,
     GroundForces,
     Header,
     JointAngles,
@@ -126,16 +126,16 @@ def criteria():
     for source, compression, shear, torque in (('measured', 3620.0, 846.0, 0.91),
                                                ('predicted', 2390.0, 612.0, 0.74)):
         rows += [
-            CriterionRow('compression_action', source, compression, 3400.0, 3400.0 - compression,
-                         'N', 'NIOSH 1981', 0.21),
-            CriterionRow('compression_maximum', source, compression, 6400.0,
-                         6400.0 - compression, 'N', 'NIOSH 1981', 0.21),
-            CriterionRow('shear_frequent', source, shear, 700.0, 700.0 - shear, 'N',
-                         'Gallagher and Marras 2012', 0.44),
-            CriterionRow('torque_index', source, torque, 1.0, 1.0 - torque, '1', 'eq. 4.12', 0.1,
-                         'hip'),
-            CriterionRow('activation_index', source, 0.62, 0.95, 0.33, '1', 'section 4.2.2', 0.7,
-                         'MF_m1s_r')]
+            Criterion('compression_action', source, compression, 3400.0, 3400.0 - compression,
+                         'N', 'NIOSH 1981', 0.21, compression / HEADER.mass),
+            Criterion('compression_maximum', source, compression, 6400.0,
+                         6400.0 - compression, 'N', 'NIOSH 1981', 0.21, compression / HEADER.mass),
+            Criterion('shear_frequent', source, shear, 700.0, 700.0 - shear, 'N',
+                         'Gallagher and Marras 2012', 0.44, shear / HEADER.mass),
+            Criterion('torque_index', source, torque, 1.0, 1.0 - torque, '1', 'eq. 4.12', 0.1,
+                         detail='hip'),
+            Criterion('activation_index', source, 0.62, 0.95, 0.33, '1', 'section 4.2.2', 0.7,
+                         detail='MF_m1s_r')]
     return tuple(rows)
 
 

@@ -47,7 +47,7 @@ class Criterion:
     unit: str
     limit_source: str
     time: float
-    per_kilogram: float
+    per_kilogram: float = math.nan
     detail: str = ''
 
 
