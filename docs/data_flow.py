@@ -162,7 +162,7 @@ LABELS = (
     Label(12, 428, ('lift_comparison', 'predicted_lift/joint_trajectory')),
     Label(572, 448, ('spine_load, muscle_analysis', 'joint_torques')),
     Label(770, 428, ('joint_reactions', 'l5_s1/reaction')),
-    Label(590, 560, ('alarms, risk_assessment',)),
+    Label(590, 560, ('alarms, alarm_states', 'risk_assessment')),
     Label(332, 562, ('results of all nodes',), 'what'),
     Label(490, 698, ('visualization, robot_description',), 'topic', 'middle'),
     Label(490, 722, ('/tf, /tf_static',), 'topic', 'middle'),

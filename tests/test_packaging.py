@@ -80,7 +80,8 @@ ROSDEP_KEYS = {
 }
 # Imported module -> wheel, where the names differ. lz4 and backports.zstd come with rosbags.
 WHEELS = {'backports': 'rosbags', 'lz4': 'rosbags', 'yaml': 'pyyaml'}
-# muscle_analyzer's script for OpenSim runs in OpenSim's own environment (make opensim).
+# muscle_analyzer's script for OpenSim runs in OpenSim's own environment (make opensim);
+# mocap4r2_msgs come with the workspace of a driver.
 OTHER_ENVIRONMENT = {'opensim', 'mocap4r2_msgs'}
 # Of the extra `ros`, or of a ROS 2 installation; beside the packages of messages.
 FROM_ROS = {
@@ -94,7 +95,7 @@ FROM_ROS = {
     'std_srvs',
 }
 # Only on PyPI and without a rosdep key; the README says how to install them.
-WITHOUT_ROSDEP_KEY = {'casadi', 'distributed', 'ezc3d', 'pyarrow'}
+WITHOUT_ROSDEP_KEY = {'apsw', 'casadi', 'distributed', 'ezc3d', 'pyarrow'}
 STANDARD_LIBRARY = sys.stdlib_module_names | {'compression'}  # compression: from Python 3.14
 # Started as processes by the launch files, or read as installed data; not imported.
 STARTED_BY_BRINGUP = {

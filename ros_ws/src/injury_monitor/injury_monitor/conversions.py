@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -146,8 +147,8 @@ def ends_from_msg(lift: Message) -> LiftEnds:
     return LiftEnds(end(int(inside[0])), end(int(inside[-1])))
 
 
-def alarm_to_msg(event: AlarmEvent, filter_delay: float) -> Message:
-    """Return the message of an alarm event."""
+def alarm_to_msg(event: AlarmEvent, filter_delay: float, unjournaled: bool = False) -> Message:
+    """Return the message of an alarm event; `unjournaled`: the journal could not be written."""
     message = make(
         'AlarmEvent',
         header=header(event.stamp),
@@ -166,6 +167,7 @@ def alarm_to_msg(event: AlarmEvent, filter_delay: float) -> Message:
         lift_id=event.lift_id,
         operator_id=event.operator,
         historical=event.historical,
+        unjournaled=unjournaled,
         message=event.message(),
     )
     for field in ('stamp_raised', 'stamp_returned'):
@@ -173,6 +175,16 @@ def alarm_to_msg(event: AlarmEvent, filter_delay: float) -> Message:
         if not math.isnan(stamp):
             setattr(message, field, to_stamp(stamp))
     return message
+
+
+def states_to_msg(events: Sequence[AlarmEvent], filter_delay: float, unjournaled: int) -> Message:
+    """Return the message of the present states, from the last event of each alarm."""
+    return make(
+        'AlarmStates',
+        header=header(max((event.stamp for event in events), default=0.0)),
+        alarms=[alarm_to_msg(event, filter_delay) for event in events],
+        unjournaled=unjournaled,
+    )
 
 
 def assessment_to_msg(result: RiskAssessment, start: float) -> Message:

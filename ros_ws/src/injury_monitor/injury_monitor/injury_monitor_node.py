@@ -13,6 +13,7 @@ from typing import Any
 
 from lifting_interfaces.msg import (
     AlarmEvent,
+    AlarmStates,
     JointTorques,
     MeasuredLift,
     MuscleAnalysis,
@@ -31,6 +32,8 @@ from injury_monitor.core.alarm import Trigger
 from injury_monitor.core.exceptions import (
     AlarmCommandError,
     InjuryMonitorError,
+    JournalError,
+    OperatorError,
     ShelveDurationError,
     UnknownAlarmError,
 )
@@ -50,19 +53,22 @@ class InjuryMonitorNode(PipelineNode):
     PACKAGE = 'injury_monitor'
     INPUT_ERRORS = (InjuryMonitorError,)
 
+    def __init__(self) -> None:
+        self._journal: AlarmJournal | None = None
+        super().__init__()
+
     def build(self) -> None:
         """Create the monitor, its publishers, subscriptions and services."""
-        self._journal = AlarmJournal(self.values['journal']) if self.values['journal'] else None
-        if self._journal is not None and self._journal.damaged_lines:
-            self.get_logger().warning(
-                f'{self._journal.path}: lines {self._journal.damaged_lines} cannot be read'
-            )
+        if self.values['journal']:
+            self._journal = AlarmJournal(self.values['journal'])
+        if self._journal is not None and self._journal.damage:
+            self.report_error(self._journal.damage)
         self.monitor = InjuryMonitor(
             self.get_namespace().strip('/') or 'station',
             max_gap=self.values['max_gap'],
             activation_window=self.values['activation_window'],
             max_shelve=self.values['max_shelve'],
-            known=self._journal.known() if self._journal is not None else (),
+            history=self._journal.events() if self._journal is not None else (),
         )
         self._collector = LiftCollector(self.values['result_wait'])
         self._subject: Message | None = None
@@ -70,6 +76,7 @@ class InjuryMonitorNode(PipelineNode):
         self._early: deque[Callable[[], None]] = deque(maxlen=qos.FRAME_DEPTH)
         self.filter_delay = math.nan
         self._alarms = self.advertise(AlarmEvent, 'alarms', qos.RESULTS)
+        self._states = self.advertise(AlarmStates, 'alarm_states', qos.LATCHED)
         self._assessments = self.advertise(RiskAssessment, 'risk_assessment', qos.RESULTS)
         self.subscribe(Subject, 'subject', self._on_subject, qos.LATCHED)
         self.subscribe(Task, 'task', self._on_task, qos.LATCHED)
@@ -83,14 +90,31 @@ class InjuryMonitorNode(PipelineNode):
             self.create_service(ResetAlarm, '~/reset_alarm', self._reset),
             self.create_service(ShelveAlarm, '~/shelve_alarm', self._shelve),
         ]
-        self._housekeeping = self.create_timer(1.0, self._assess_ready)
+        self._housekeeping = self.create_timer(1.0, self._each_second_active)
+
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Start publishing, with the states that an earlier process recorded."""
+        result = super().on_activate(state)
+        self._publish_states()
+        return result
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Drop the services and the timer with the rest."""
         for service in self._operator_services:
             self.destroy_service(service)
         self.destroy_timer(self._housekeeping)
+        self._close_journal()
         return super().on_cleanup(state)
+
+    def destroy_node(self) -> None:
+        """Close the journal, so that another process may write, and destroy the node."""
+        self._close_journal()
+        super().destroy_node()
+
+    def _close_journal(self) -> None:
+        if self._journal is not None:
+            self._journal.close()
+            self._journal = None
 
     def _on_subject(self, message: Message) -> None:
         self._subject = message
@@ -109,6 +133,7 @@ class InjuryMonitorNode(PipelineNode):
             f'{limits.compression_maximum.value:g} N, anterior shear {limits.shear.value:g} N '
             f'({limits.loads_per_day:g} loads a day)'
         )
+        self._publish_states()
         while self._early:
             self._early.popleft()()
 
@@ -235,13 +260,32 @@ class InjuryMonitorNode(PipelineNode):
         self._assessments.publish(encode(message))
 
     def _announce(self, events: list[alarm_event.AlarmEvent]) -> None:
+        """Write events into the journal, then publish them: also those that cannot be written."""
         if not events:
             return
+        unjournaled = False
         if self._journal is not None:
-            self._journal.append(events)
+            try:
+                self._journal.append(events)
+            except JournalError as error:
+                unjournaled = True
+                self.report_error(f'alarms go out without a journal: {error}')
         for event in events:
             self.get_logger().warning(event.message())
-            self._alarms.publish(encode(conversions.alarm_to_msg(event, self.filter_delay)))
+            message = conversions.alarm_to_msg(event, self.filter_delay, unjournaled)
+            self._alarms.publish(encode(message))
+        self._publish_states()
+
+    def _publish_states(self) -> None:
+        unwritten = self._journal.unwritten if self._journal is not None else 0
+        events = self.monitor.last_events()
+        message = conversions.states_to_msg(events, self.filter_delay, unwritten)
+        self._states.publish(encode(message))
+
+    def _each_second_active(self) -> None:
+        self._assess_ready()
+        if self.active:
+            self._announce(self.monitor.tick())
 
     def _acknowledge(
         self, request: AcknowledgeAlarm.Request, response: AcknowledgeAlarm.Response
@@ -265,7 +309,12 @@ class InjuryMonitorNode(PipelineNode):
             UnknownAlarmError: ShelveAlarm.Response.UNKNOWN_ALARM,
             AlarmCommandError: ShelveAlarm.Response.NOT_IN_THIS_STATE,
             ShelveDurationError: ShelveAlarm.Response.DURATION_REFUSED,
+            OperatorError: ShelveAlarm.Response.OPERATOR_MISSING,
         }
+        if not self.active:
+            response.error_code = ShelveAlarm.Response.NOT_ACTIVE
+            response.error_message = 'the monitor is not active'
+            return response
         try:
             events = self.monitor.command(
                 trigger, request.alarm_id, request.operator_id, duration=duration

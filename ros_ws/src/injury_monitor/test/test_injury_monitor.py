@@ -13,6 +13,7 @@ from injury_monitor.core.exceptions import (
     AlarmCommandError,
     InjuryMonitorError,
     InvalidInputError,
+    OperatorError,
     ShelveDurationError,
     UnknownAlarmError,
 )
@@ -215,7 +216,7 @@ def test_known_occurrences_survive_the_process():
     stamps, load = lift(4500.0)
     first = monitor()
     events = feed(first, stamps, load)
-    second = monitor(known={event.occurrence for event in events})
+    second = monitor(history=events)
     assert feed(second, stamps, load) == []
     assert second.repeats_withheld() == 1
 
@@ -228,16 +229,23 @@ def test_a_late_or_doubled_sample_is_left_out_and_counted():
     assert (counts.used, counts.out_of_order, counts.restarts) == (3, 2, 0)
 
 
-def test_shelving_is_silent_ends_by_the_data_clock_and_tells_what_is_the_case():
-    target = monitor()
+def test_shelving_is_silent_and_ends_by_the_clock_of_the_station():
+    now = [100.0]
+    target = monitor(clock=lambda: now[0])
     target.update_spine_load(0.0, 600.0, 0.0, True)
     (shelved,) = target.command(Trigger.SHELVE, HIGH, 'panel 1', 'known test', 3.0)
     assert shelved.state is AlarmState.SHELVED and shelved.reason == 'known test'
     load = np.full(500, 5000.0)
-    events = of(feed(target, 0.01 + np.arange(500) / RATE, load), HIGH)
-    assert [event.trigger for event in events] == [Trigger.UNSHELVE]
-    assert events[0].state is AlarmState.UNACKNOWLEDGED_ACTIVE
-    assert events[0].stamp == pytest.approx(3.0)
+    assert of(feed(target, 0.01 + np.arange(500) / RATE, load), HIGH) == []
+    now[0] = 102.9
+    assert target.tick() == []
+    # Also when no more samples come.
+    now[0] = 103.0
+    (event,) = target.tick()
+    assert (event.trigger, event.state) == (Trigger.UNSHELVE, AlarmState.UNACKNOWLEDGED_ACTIVE)
+    assert event.stamp == pytest.approx(5.0)
+    assert math.isnan(event.shelved_until)
+    assert shelved.shelved_until == pytest.approx(103.0)
 
 
 def test_a_latching_alarm_is_not_lost_while_suppressed():
@@ -256,6 +264,9 @@ def test_commands_that_do_not_apply_are_refused_and_change_nothing():
         target.command(Trigger.ACKNOWLEDGE, 'no_such_alarm', 'panel 1')
     with pytest.raises(AlarmCommandError, match='NORMAL'):
         target.command(Trigger.ACKNOWLEDGE, HIGH, 'panel 1')
+    for operator in ('', ' '):
+        with pytest.raises(OperatorError, match='role or terminal'):
+            target.command(Trigger.SUPPRESS, HIGH, operator)
     with pytest.raises(AlarmCommandError, match='samples'):
         target.command(Trigger.RAISE, HIGH, 'panel 1')
     for duration in (0.0, -1.0, math.nan, 8 * 3600.0 + 1.0):

@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The node in this process, talked to over its topics and services."""
 
-import time
-
 import numpy as np
 import pytest
 
@@ -11,7 +9,6 @@ rclpy = pytest.importorskip('rclpy', reason='rclpy is not installed')
 pytest.importorskip('lifting_interfaces.msg', reason='the interface package is not built')
 
 from lifecycle_msgs.msg import Transition  # noqa: E402
-from lifecycle_msgs.srv import ChangeState  # noqa: E402
 from lifting_interfaces.msg import (  # noqa: E402
     AlarmEvent,
     BodyMotion,
@@ -22,128 +19,16 @@ from lifting_interfaces.msg import (  # noqa: E402
     RiskAssessment,
     SolveReport,
     SpineLoad,
-    Subject,
     Task,
 )
 from lifting_interfaces.srv import AcknowledgeAlarm, ResetAlarm, ShelveAlarm  # noqa: E402
-from rclpy.executors import SingleThreadedExecutor  # noqa: E402
 from rclpy.serialization import serialize_message  # noqa: E402
 
-from injury_monitor.injury_monitor_node import InjuryMonitorNode  # noqa: E402
 from lifting_messages.exceptions import ParameterError  # noqa: E402
 from lifting_messages.stamps import to_seconds, to_stamp  # noqa: E402
-from lifting_node import qos  # noqa: E402
 
 HIGH, HIGH_HIGH = 'l5_s1_compression_high', 'l5_s1_compression_high_high'
 PATIENCE = 20.0
-
-
-class Station:
-    """The node and a client beside it, spun together."""
-
-    def __init__(self, namespace, parameters):
-        arguments = ['--ros-args', '-r', f'__ns:=/{namespace}']
-        for name, value in parameters.items():
-            arguments += ['-p', f'{name}:={value}']
-        rclpy.init(args=arguments)
-        self.node = InjuryMonitorNode()
-        self.client = rclpy.create_node('client', namespace=namespace)
-        self.executor = SingleThreadedExecutor()
-        self.executor.add_node(self.node)
-        self.executor.add_node(self.client)
-        self.alarms, self.assessments = [], []
-        self.client.create_subscription(AlarmEvent, 'alarms', self.alarms.append, qos.RESULTS)
-        self.client.create_subscription(
-            RiskAssessment, 'risk_assessment', self.assessments.append, qos.RESULTS
-        )
-        topics = {
-            'subject': (Subject, qos.LATCHED),
-            'task': (Task, qos.LATCHED),
-            'spine_load': (SpineLoad, qos.FRAMES),
-            'joint_torques': (JointTorques, qos.FRAMES),
-            'muscle_analysis': (MuscleAnalysis, qos.FRAMES),
-            'measured_lift': (MeasuredLift, qos.RESULTS),
-            'predicted_lift': (PredictedLift, qos.RESULTS),
-        }
-        self.publishers = {
-            topic: self.client.create_publisher(kind, topic, profile)
-            for topic, (kind, profile) in topics.items()
-        }
-
-    def until(self, condition, what):
-        """Spin until a condition holds; fail by name when patience is over."""
-        deadline = time.monotonic() + PATIENCE
-        while not condition():
-            assert time.monotonic() < deadline, f'{what} did not happen in {PATIENCE} s'
-            self.executor.spin_once(timeout_sec=0.05)
-
-    def call(self, kind, name, request):
-        """Call a service and return its answer."""
-        service = self.client.create_client(kind, f'injury_monitor/{name}')
-        self.until(service.service_is_ready, f'service {name}')
-        future = service.call_async(request)
-        self.until(future.done, f'answer of {name}')
-        return future.result()
-
-    def transition(self, number):
-        """Ask for a lifecycle transition."""
-        request = ChangeState.Request(transition=Transition(id=number))
-        return self.call(ChangeState, 'change_state', request).success
-
-    def bring_up(self):
-        """Configure and activate the node, enter person and task."""
-        assert self.transition(Transition.TRANSITION_CONFIGURE)
-        assert self.transition(Transition.TRANSITION_ACTIVATE)
-        self.send('subject', Subject(pseudonym='P01', mass=70.0))
-        self.send(
-            'task',
-            Task(
-                task_id='bag',
-                box_mass=12.0,
-                coupling=Task.COUPLING_GOOD,
-                lifts_per_day=50.0,
-                lifts_per_minute=1.0,
-                duration_hours=1.0,
-            ),
-        )
-        self.until(lambda: self.node.monitor.work is not None, 'configuration')
-
-    def send(self, topic, message):
-        """Publish once there is a reader."""
-        publisher = self.publishers[topic]
-        self.until(lambda: publisher.get_subscription_count() > 0, f'reader of {topic}')
-        publisher.publish(message)
-
-    def live(self, start, compression, status=0):
-        """Send live samples at 100 Hz, ten a message."""
-        for first in range(0, len(compression), 10):
-            part = list(compression[first : first + 10])
-            message = SpineLoad(
-                source=SpineLoad.LIVE,
-                lift_id='lift_001',
-                filter_delay=0.045,
-                compression=part,
-                anterior_shear=[0.0] * len(part),
-                status=[status] * len(part),
-                time_from_start=[k / 100.0 for k in range(len(part))],
-            )
-            message.header.stamp = to_stamp(start + first / 100.0)
-            self.send('spine_load', message)
-
-    def close(self):
-        """End everything."""
-        self.executor.shutdown()
-        self.client.destroy_node()
-        self.node.destroy_node()
-        rclpy.shutdown()
-
-
-@pytest.fixture
-def station(request, monkeypatch):
-    monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
-    result = Station(f'test_{request.node.name.split("[")[0]}', getattr(request, 'param', {}))
-    yield result
-    result.close()
 
 
 def block(kind, source, **fields):
@@ -302,20 +187,6 @@ def test_bad_messages_are_counted_and_the_node_goes_on(station):
     assert station.node.monitor.counts['spine_load'].unsolved == 50
 
 
-def test_a_known_alarm_is_not_announced_by_the_next_process(tmp_path, monkeypatch):
-    monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
-    for run, announced in (('first', 2), ('second', 0)):
-        station = Station('test_journal', {'journal': tmp_path / 'alarms.jsonl'})
-        try:
-            station.bring_up()
-            station.live(100.0, [7000.0] * 50)
-            station.until(lambda s=station: s.node.monitor.counts['spine_load'].used == 50, run)
-            station.until(lambda s=station, n=announced: len(s.alarms) >= n, f'{run} alarms')
-            assert len(station.alarms) == announced
-        finally:
-            station.close()
-
-
 def test_node_can_be_cleaned_up_and_configured_again(station):
     station.bring_up()
     assert station.transition(Transition.TRANSITION_DEACTIVATE)
@@ -331,10 +202,9 @@ def test_node_can_be_cleaned_up_and_configured_again(station):
     station.until(lambda: len(station.alarms) == 2, 'alarms after the second configuration')
 
 
-def test_bad_parameter_is_refused(monkeypatch):
-    monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+def test_bad_parameter_is_refused(new_station):
     try:
         with pytest.raises(ParameterError, match='max_gap'):
-            Station('test_bad_parameter', {'max_gap': -1.0})
+            new_station('test_bad_parameter', {'max_gap': -1.0})
     finally:
         rclpy.try_shutdown()

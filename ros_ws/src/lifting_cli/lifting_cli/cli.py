@@ -17,6 +17,7 @@ from lifting_cli import (
     compare_command,
     emg_command,
     import_command,
+    journal_command,
     model_command,
     opensim_command,
     planning_command,
@@ -130,6 +131,7 @@ def _parser() -> argparse.ArgumentParser:
     compare_command.add_to(commands)
     opensim_command.add_to(commands)
     emg_command.add_to(commands)
+    journal_command.add_to(commands)
     planning_command.add_to(commands)
     study_command.add_to(commands)
     urdf_command.add_to(commands)

@@ -40,6 +40,7 @@ class Trigger(Enum):
 
 SILENT_STATES = (AlarmState.SHELVED, AlarmState.SUPPRESSED, AlarmState.OUT_OF_SERVICE)
 ANNOUNCED_STATES = tuple(state for state in AlarmState if state not in SILENT_STATES)
+ACTIVE_STATES = (AlarmState.UNACKNOWLEDGED_ACTIVE, AlarmState.ACKNOWLEDGED_ACTIVE)
 PROCESS_TRIGGERS = (Trigger.RAISE, Trigger.CLEAR)
 
 _S = AlarmState

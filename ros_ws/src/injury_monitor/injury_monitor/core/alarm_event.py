@@ -9,11 +9,13 @@ from dataclasses import dataclass
 from injury_monitor.core.alarm import AlarmState, Trigger
 
 
-def occurrence_id(station: str, alarm: str, recording: str, stamp: float) -> str:
+def occurrence_id(station: str, alarm: str, recording: str, stamp: float, value: float) -> str:
     """Name one occurrence of an alarm so that the same data always give the same name.
 
-    The lift's number is left out on purpose: a tracker that sees the same recording a second time
-    may count its lifts on, while the recording's name and the stamp stay.
+    The lift is left out on purpose: its name may be another one when the same recording is seen a
+    second time.  The value is part of the name because clocks may begin at zero with each trial:
+    other data then have the same stamps, and an alarm of theirs must not be taken for one that
+    was announced before.
 
     Parameters
     ----------
@@ -21,8 +23,10 @@ def occurrence_id(station: str, alarm: str, recording: str, stamp: float) -> str
         ``recording`` keeps two recordings apart whose clocks both start at zero.
     stamp : float
         Stamp of the raise [s].
+    value : float
+        Value at the raise, in the unit of the limit.
     """
-    return f'{station}/{alarm}/{recording}/{stamp:.6f}'
+    return f'{station}/{alarm}/{recording}/{stamp:.6f}/{value:.6g}'
 
 
 @dataclass(frozen=True)
@@ -54,6 +58,8 @@ class AlarmEvent:
         Joint or muscle concerned; '' for the spine.
     operator, reason : str
         Of an operator's command.
+    shelved_until : float
+        End of shelving by the clock of the station [s since 1970]; NaN if not shelved.
     historical : bool
         From data that the caller declared to be stored data.
     """
@@ -79,6 +85,7 @@ class AlarmEvent:
     detail: str
     operator: str
     reason: str
+    shelved_until: float
     historical: bool
 
     def message(self) -> str:

@@ -46,5 +46,29 @@ class ShelveDurationError(InvalidInputError):
     """A shelving time is not positive or is longer than allowed."""
 
 
+class OperatorError(InvalidInputError):
+    """A command does not name the role or terminal of the operator."""
+
+
 class JournalError(InjuryMonitorError):
-    """The alarm journal cannot be read or written."""
+    """The alarm journal cannot be read or written.
+
+    Attributes
+    ----------
+    path : Path or str
+        File.
+    problem : str
+        What is wrong.
+    """
+
+    def __init__(self, path: object, problem: str) -> None:
+        super().__init__(f'{path}: {problem}')
+        self.path = path
+        self.problem = problem
+
+
+class JournalInUseError(JournalError):
+    """Another process writes to the journal."""
+
+    def __init__(self, path: object) -> None:
+        super().__init__(path, 'another process writes to this journal')

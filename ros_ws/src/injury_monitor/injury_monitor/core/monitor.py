@@ -5,7 +5,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+import time
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +19,7 @@ from injury_monitor.core.alarm_settings import AlarmSettings, read_alarm_setting
 from injury_monitor.core.assessment import RiskAssessment, assess_lift
 from injury_monitor.core.exceptions import (
     InjuryMonitorError,
+    OperatorError,
     ShelveDurationError,
     UnknownAlarmError,
 )
@@ -83,8 +85,11 @@ class InjuryMonitor:
         Of the activation index [s].
     max_shelve : float
         Longest shelving [s].
-    known : iterable of str
-        Occurrences announced earlier, for example from the journal.
+    history : iterable of AlarmEvent
+        Events of earlier processes in their order, from the journal: the alarms go on from the
+        state after them, and occurrences in them are not announced again.
+    clock : callable
+        Clock of the station [s since 1970], by which shelving ends.
     work : Work, optional
         Person and task; otherwise `configure` sets them later.
     """
@@ -96,7 +101,8 @@ class InjuryMonitor:
         max_gap: float = DEFAULT_MAX_GAP,
         activation_window: float = DEFAULT_WINDOW,
         max_shelve: float = DEFAULT_MAX_SHELVE,
-        known: Iterable[str] = (),
+        history: Iterable[AlarmEvent] = (),
+        clock: Callable[[], float] = time.time,
         work: Work | None = None,
     ) -> None:
         self.station = station
@@ -104,7 +110,9 @@ class InjuryMonitor:
         self.max_gap = positive('max_gap', max_gap)
         self.max_shelve = positive('max_shelve', max_shelve)
         self.activation_window = positive('activation_window', activation_window)
-        self.known = set(known)
+        self._history = list(history)
+        self.known = {event.occurrence for event in self._history if event.occurrence}
+        self._clock = clock
         self.counts = {stream: StreamCounts() for stream in _STREAMS}
         self.limits: LimitSet | None = None
         self.work: Work | None = None
@@ -133,12 +141,16 @@ class InjuryMonitor:
                     settings, limit, self.station, work.recording, self.max_gap, self.known
                 )
                 self._alarms[settings.alarm] = alarm
+                for event in self._history:
+                    if event.alarm == settings.alarm:
+                        alarm.restore(event)
             else:
                 alarm.set_limit(limit, work.recording)
             self._by_quantity[limit.quantity].append(alarm)
         if self.work is not None and work.recording != self.work.recording:
             self._stamps.clear()
             self._mean.reset()
+        self._history.clear()
         self.work = work
         self.limits = limits
         return limits
@@ -240,7 +252,6 @@ class InjuryMonitor:
         operator: str,
         reason: str = '',
         duration: float = math.nan,
-        stamp: float | None = None,
     ) -> list[AlarmEvent]:
         """Apply an operator's command to one alarm.
 
@@ -254,24 +265,36 @@ class InjuryMonitor:
             Role or terminal, and why.
         duration : float
             Of shelving [s], more than 0 and not more than ``max_shelve``.
-        stamp : float, optional
-            Time of the command [s]; the latest sample's by default.
 
         Raises
         ------
-        UnknownAlarmError, AlarmCommandError, ShelveDurationError
+        OperatorError, UnknownAlarmError, AlarmCommandError, ShelveDurationError
             Nothing changes then.
         """
+        if not operator.strip():
+            raise OperatorError('operator', operator, 'name the role or terminal')
         if alarm not in self._alarms:
             raise UnknownAlarmError(f'alarm {alarm!r} is not one of {sorted(self._alarms)}')
         if trigger is Trigger.SHELVE and not 0.0 < duration <= self.max_shelve:
             raise ShelveDurationError(
                 'duration', duration, f'must lie in 0 (excluded) to {self.max_shelve:g} s'
             )
-        latest = max(self._stamps.values(), default=0.0)
         return self._alarms[alarm].command(
-            trigger, latest if stamp is None else stamp, operator, reason, duration
+            trigger, self._latest(), operator, reason, self._clock() + duration
         )
+
+    def tick(self) -> list[AlarmEvent]:
+        """End the shelvings whose time is over by the clock, also while no samples come."""
+        now = self._clock()
+        return [
+            event
+            for alarm in self._alarms.values()
+            for event in alarm.end_shelving(now, self._latest())
+        ]
+
+    def last_events(self) -> list[AlarmEvent]:
+        """Return the last event of each alarm that has one."""
+        return [a.last_event for a in self._alarms.values() if a.last_event is not None]
 
     def states(self) -> dict[str, AlarmState]:
         """Return the state of every alarm."""
@@ -293,6 +316,9 @@ class InjuryMonitor:
         return assess_lift(
             work, limits, measured, predicted, ends, self.activation_window, no_prediction
         )
+
+    def _latest(self) -> float:
+        return max(self._stamps.values(), default=0.0)
 
     def _configured(self) -> tuple[Work, LimitSet]:
         if self.work is None or self.limits is None:

@@ -7,7 +7,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from injury_monitor.core.alarm import PROCESS_TRIGGERS, AlarmState, Trigger, next_state
+from injury_monitor.core.alarm import (
+    ACTIVE_STATES,
+    PROCESS_TRIGGERS,
+    AlarmState,
+    Trigger,
+    next_state,
+)
 from injury_monitor.core.alarm_event import AlarmEvent, occurrence_id
 from injury_monitor.core.alarm_settings import AlarmSettings
 from injury_monitor.core.condition import EdgeKind, LimitCondition
@@ -73,6 +79,7 @@ class StationAlarm:
         self.repeats_withheld = 0
         self._tripped = False
         self._muted = False
+        self.last_event: AlarmEvent | None = None
         self._last = Sample(_NAN, _NAN)
         self._occurrence = ''
         self._onset = self._raised = self._returned = self._acknowledged = _NAN
@@ -88,28 +95,29 @@ class StationAlarm:
 
     def sample(self, sample: Sample) -> list[AlarmEvent]:
         """Take one good sample and return the transitions it causes."""
-        events = self._end_of_shelving(sample)
         self._last = sample
         edge = self.condition.sample(sample.stamp, sample.value)
         if edge is None:
-            return events
+            return []
         if edge.kind is EdgeKind.RAISE:
-            name = occurrence_id(self.station, self.settings.alarm, self.recording, edge.stamp)
+            name = occurrence_id(
+                self.station, self.settings.alarm, self.recording, edge.stamp, edge.value
+            )
             if name in self.known:
                 self._muted = True
                 self.repeats_withheld += 1
-                return events
+                return []
             self.known.add(name)
             self._occurrence = name
             self._onset, self._raised = edge.onset, edge.stamp
             self._returned = self._acknowledged = _NAN
             self._tripped = self.settings.latching
-            return events + self._apply(Trigger.RAISE, edge.stamp)
+            return self._apply(Trigger.RAISE, edge.stamp)
         if self._muted:
             self._muted = False
-            return events
+            return []
         self._returned = edge.stamp
-        return events + self._apply(Trigger.CLEAR, edge.stamp)
+        return self._apply(Trigger.CLEAR, edge.stamp)
 
     def command(
         self,
@@ -117,9 +125,18 @@ class StationAlarm:
         stamp: float,
         operator: str,
         reason: str = '',
-        duration: float = _NAN,
+        shelved_until: float = _NAN,
     ) -> list[AlarmEvent]:
         """Apply an operator's command.
+
+        Parameters
+        ----------
+        trigger : Trigger
+        stamp : float
+            Of the latest sample [s].
+        operator, reason : str
+        shelved_until : float
+            End of shelving by the clock of the station [s].
 
         Raises
         ------
@@ -128,9 +145,42 @@ class StationAlarm:
         """
         if trigger in PROCESS_TRIGGERS:
             raise AlarmCommandError(f'{trigger.value}: comes from samples, not from an operator')
-        events = self._apply(trigger, stamp, operator, reason)
-        self.shelved_until = stamp + duration if trigger is Trigger.SHELVE else _NAN
-        return events
+        before = self.shelved_until
+        self.shelved_until = shelved_until if trigger is Trigger.SHELVE else _NAN
+        try:
+            return self._apply(trigger, stamp, operator, reason)
+        except AlarmCommandError:
+            self.shelved_until = before
+            raise
+
+    def end_shelving(self, now: float, stamp: float) -> list[AlarmEvent]:
+        """End a shelving whose time is over; `now` is the clock of the station [s]."""
+        if self.state is not AlarmState.SHELVED or not now >= self.shelved_until:
+            return []
+        self.shelved_until = _NAN
+        return self._apply(Trigger.UNSHELVE, stamp, reason='the time is over')
+
+    def restore(self, event: AlarmEvent) -> None:
+        """Take over the state that an earlier process recorded with its last event.
+
+        To be called with all events of the alarm in their order: a latching alarm that was raised
+        and silenced is known from an earlier one.
+        """
+        self.last_event = event
+        self.state = event.state
+        self.shelved_until = event.shelved_until
+        self._occurrence = event.occurrence
+        self._onset, self._raised = event.onset, event.stamp_raised
+        self._returned, self._acknowledged = event.stamp_returned, event.stamp_acknowledged
+        self._last = Sample(
+            event.stamp, event.value, event.lift_id, event.detail, event.historical
+        )
+        if event.trigger is Trigger.RAISE:
+            self._tripped = self.settings.latching
+        elif event.trigger is Trigger.RESET:
+            self._tripped = False
+        # Of a silent alarm the next samples show whether its condition holds.
+        self.condition.active = event.state in ACTIVE_STATES
 
     def _new_condition(self, limit: Limit) -> LimitCondition:
         return LimitCondition(
@@ -140,12 +190,6 @@ class StationAlarm:
             self.settings.deadband,
             self.max_gap,
         )
-
-    def _end_of_shelving(self, sample: Sample) -> list[AlarmEvent]:
-        if self.state is AlarmState.SHELVED and sample.stamp >= self.shelved_until:
-            self.shelved_until = _NAN
-            return self._apply(Trigger.UNSHELVE, sample.stamp, reason='the time is over')
-        return []
 
     def _apply(
         self, trigger: Trigger, stamp: float, operator: str = '', reason: str = ''
@@ -159,30 +203,35 @@ class StationAlarm:
             self._acknowledged = stamp
         if trigger is Trigger.RESET:
             self._tripped = False
+        self.last_event = self._event(trigger, previous, stamp, operator, reason)
+        return [self.last_event]
+
+    def _event(
+        self, trigger: Trigger, previous: AlarmState, stamp: float, operator: str, reason: str
+    ) -> AlarmEvent:
         limit = self.condition.limit
-        return [
-            AlarmEvent(
-                self._occurrence,
-                self.settings.alarm,
-                self.station,
-                trigger,
-                previous,
-                self.state,
-                self.settings.severity,
-                self._last.value,
-                limit.value,
-                limit.margin(self._last.value),
-                limit.unit,
-                limit.source,
-                stamp,
-                self._onset,
-                self._raised,
-                self._returned,
-                self._acknowledged,
-                self._last.lift_id,
-                self._last.detail,
-                operator,
-                reason,
-                self._last.historical,
-            )
-        ]
+        return AlarmEvent(
+            self._occurrence,
+            self.settings.alarm,
+            self.station,
+            trigger,
+            previous,
+            self.state,
+            self.settings.severity,
+            self._last.value,
+            limit.value,
+            limit.margin(self._last.value),
+            limit.unit,
+            limit.source,
+            stamp,
+            self._onset,
+            self._raised,
+            self._returned,
+            self._acknowledged,
+            self._last.lift_id,
+            self._last.detail,
+            operator,
+            reason,
+            self.shelved_until,
+            self._last.historical,
+        )
