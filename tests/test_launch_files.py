@@ -70,6 +70,19 @@ def test_launch_file_starts_executables_that_exist(path, stand_ins):
         assert re.search(rf'^ +{executable} = {package}\.\w+:main$', setup, re.MULTILINE)
 
 
+def test_graph_restarts_every_node_and_passes_the_journal(stand_ins):
+    path = SOURCE / 'lifting_bringup' / 'launch' / 'lift.launch.py'
+    spec = importlib.util.spec_from_file_location('lift_launch', path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    module.generate_launch_description()
+    calls = {call.kwargs['package']: call.kwargs for call in stand_ins.call_args_list}
+    assert set(calls) == set(NODES)
+    assert all(kwargs['respawn'] and kwargs['respawn_delay'] > 0.0 for kwargs in calls.values())
+    names = {key for part in calls['injury_monitor']['parameters'][1:] for key in part}
+    assert 'journal' in names
+
+
 @pytest.mark.parametrize('node', NODES)
 def test_parameter_file_repeats_the_declared_defaults(node):
     """A user who starts from the file starts from the same values as without it."""

@@ -15,10 +15,13 @@ from lifecycle_msgs.msg import Transition
 
 from launch import LaunchDescription
 
-NODES = ('muscle_analyzer', 'lift_predictor', 'motion_tracker', 'injury_monitor')
+#: Time [s] before a node that ended is started again.
+RESPAWN_DELAY = 1.0
+
+NODES = ('muscle_analyzer', 'lift_predictor', 'motion_tracker')
 
 
-def managed_node(name: str, condition: IfCondition | None = None) -> list:
+def managed_node(name: str, condition: IfCondition | None = None, *parameters: dict) -> list:
     """Return a lifecycle node and the handlers that configure and activate it."""
     node = LifecycleNode(
         package=name,
@@ -28,8 +31,12 @@ def managed_node(name: str, condition: IfCondition | None = None) -> list:
         parameters=[
             PathJoinSubstitution([FindPackageShare(name), 'config', f'{name}.yaml']),
             {'use_sim_time': LaunchConfiguration('use_sim_time')},
+            *parameters,
         ],
         output='screen',
+        # A node that ends is started again, and the handlers below bring it up.
+        respawn=True,
+        respawn_delay=RESPAWN_DELAY,
         condition=condition,
     )
 
@@ -66,12 +73,18 @@ def generate_launch_description() -> LaunchDescription:
             description='Follow /clock (true when a bag is played)',
         ),
         DeclareLaunchArgument(
+            'journal',
+            default_value='',
+            description='File of the alarm journal: alarms go on from their state after a restart',
+        ),
+        DeclareLaunchArgument(
             'visualization',
             default_value='true',
             description='Also publish markers, /tf and the URDF of the person',
         ),
     ]
     entities = [entity for name in NODES for entity in managed_node(name)]
+    entities += managed_node('injury_monitor', None, {'journal': LaunchConfiguration('journal')})
     shown = IfCondition(LaunchConfiguration('visualization'))
     entities += managed_node('lifting_visualization', shown)
     return LaunchDescription([*arguments, *entities])

@@ -4,8 +4,10 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable
+from typing import Final
 
 import rclpy
 from rclpy.executors import ExternalShutdownException
@@ -15,6 +17,9 @@ from rclpy.node import Node
 
 from lifting_messages.exceptions import ParameterError
 
+#: How far away a process may be to discover this one; nodes stay on their machine by default.
+RANGE: Final = 'ROS_AUTOMATIC_DISCOVERY_RANGE'
+
 
 def run_node(factory: Callable[[], Node], args: list[str] | None = None) -> None:
     """Create a node and spin it until it is told to stop.
@@ -22,6 +27,9 @@ def run_node(factory: Callable[[], Node], args: list[str] | None = None) -> None
     One event-driven executor a process, stepped with a time-out: it takes a third of the
     processor time of the waiting executors at a thousand messages a second, and stepping keeps
     signals served.
+
+    Discovery stays on this machine unless `ROS_AUTOMATIC_DISCOVERY_RANGE` is set, however the
+    process is started.
 
     Parameters
     ----------
@@ -35,6 +43,7 @@ def run_node(factory: Callable[[], Node], args: list[str] | None = None) -> None
     SystemExit
         With code 2 if a parameter was refused.
     """
+    os.environ.setdefault(RANGE, 'LOCALHOST')
     rclpy.init(args=args)
     try:
         node = factory()

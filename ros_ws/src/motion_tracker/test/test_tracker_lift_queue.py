@@ -66,6 +66,14 @@ def test_lifts_are_built_step_by_step_from_the_frames_round_them(queue):
     assert done[5][0][2] is None
 
 
+def test_lifts_of_two_sessions_have_different_names(builder):
+    names = set()
+    for session in ('3f9a7c2e', '51b0d844'):
+        status = LiveStatus(MassWatch(70.0, 0.05), 0.5)
+        names.update(lift(LiftQueue(builder, 0.5, 1, None, status, session), 1.0, 2.0))
+    assert names == {'lift_001_3f9a7c2e', 'lift_001_51b0d844'}
+
+
 def test_an_end_without_a_start_is_no_lift(queue):
     assert queue.take([event(LiftPhase.END, 2.0)], FROM_BOX) == []
     assert queue.end_known is None

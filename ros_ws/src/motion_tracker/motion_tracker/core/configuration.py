@@ -44,6 +44,7 @@ def tracker_from(
     first_lift: int = 1,
     clock: Callable[[], float] | None = None,
     settings: TrackerSettings | None = None,
+    session: str = '',
 ) -> MotionTracker:
     """Tracker of one recording.
 
@@ -59,6 +60,8 @@ def tracker_from(
         Time now [s], for live streams; None when reading files.
     settings
         Replace those of ``values``.
+    session
+        End of the lifts' names; '' for none.
 
     Raises
     ------
@@ -79,4 +82,5 @@ def tracker_from(
         settings_from(values) if settings is None else settings,
         first_lift,
         clock,
+        session,
     )

@@ -65,6 +65,8 @@ class MotionTracker:
     clock
         Current time [s], by which a missing stream is declared lost (`StreamSynchronizer`); None
         when reading files.
+    session
+        End of the lifts' names, by which lifts of two processes differ; '' for none.
 
     Attributes
     ----------
@@ -82,6 +84,7 @@ class MotionTracker:
         settings: TrackerSettings | None = None,
         first_lift: int = 1,
         clock: Callable[[], float] | None = None,
+        session: str = '',
     ) -> None:
         self.settings = settings or TrackerSettings()
         self.subject = subject
@@ -119,7 +122,7 @@ class MotionTracker:
             settling_time(self.settings.motion_cutoff),
         )
         self._lifts = LiftQueue(
-            builder, self.settings.margin, first_lift, self._hand_force, self._status
+            builder, self.settings.margin, first_lift, self._hand_force, self._status, session
         )
         self._notices: list[Output] = []
 

@@ -36,6 +36,8 @@ class LiftQueue:
         Number of the first lift, which is part of its name.
     hand_force, status
         Of the recording; a lift uses their state at the begin of its building.
+    session
+        End of the lifts' names, by which lifts of two processes differ; '' for none.
 
     Attributes
     ----------
@@ -53,6 +55,7 @@ class LiftQueue:
         first_lift: int,
         hand_force: HandForceEstimator,
         status: LiveStatus,
+        session: str = '',
     ) -> None:
         self.number = first_lift - 1
         self.end_known: float | None = None
@@ -60,6 +63,7 @@ class LiftQueue:
         self._margin = margin
         self._hand_force = hand_force
         self._status = status
+        self._suffix = f'_{session}' if session else ''
         self._frames: deque[FrameRecord] = deque()
         self._latest = -np.inf
         self._allowed_steps = 0
@@ -85,7 +89,7 @@ class LiftQueue:
             if event.phase is LiftPhase.START:
                 self.number += 1
                 support = event.height if source == FROM_BOX else None
-                self._current = (f'lift_{self.number:03d}', event, support)
+                self._current = (f'lift_{self.number:03d}{self._suffix}', event, support)
                 self.end_known = None
                 outputs.append(DetectedEvent(event, self._current[0], source))
             elif self._current is not None:
