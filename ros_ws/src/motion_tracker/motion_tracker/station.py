@@ -23,7 +23,7 @@ from lifting_messages.plate_blocks import block_samples
 from lifting_messages.station import Log, Output, Station
 from motion_tracker import conversions, inputs, topics
 from motion_tracker.core.configuration import tracker_from
-from motion_tracker.core.recording_segmenter import RecordingSegmenter
+from motion_tracker.core.recording_segmenter import LEAP, RecordingSegmenter
 from motion_tracker.core.tracked import DetectedEvent, MeasuredLift, TrackedFrame, TrackerSettings
 from motion_tracker.core.tracked import Output as Tracked
 from motion_tracker.core.tracker import MotionTracker
@@ -78,7 +78,7 @@ class TrackerStation(Station):
         self._subject: tuple[Subject, str] | None = None
         self._task: tuple[float, Array] | None = None
         self._early: deque[Sample] = deque(maxlen=EARLY_SAMPLES)
-        self._segmenter: RecordingSegmenter[Sample] = RecordingSegmenter()
+        self._segmenter: RecordingSegmenter[Sample] = RecordingSegmenter(clock=clock)
         self._recording = 0
         self._frames = 0
         self._inputs: dict[str, Callable[[Message], Iterator[Tracked]]] = {
@@ -167,21 +167,27 @@ class TrackerStation(Station):
 
     def _on_block(self, side: str, message: Message) -> Iterator[Tracked]:
         stamps, samples = block_samples(message)
-        if all(before < after for before, after in pairwise(stamps)):
-            yield from self._take(side, stamps[0], _block(side, stamps, samples))
+        if all(0.0 < after - before < LEAP for before, after in pairwise(stamps)):
+            block = _block(side, stamps, samples)
+            yield from self._take(side, stamps[0], block, stamps[-1])
             return
         for k, stamp in enumerate(stamps):
             yield from self._take(side, stamp, _block(side, [stamp], samples[k : k + 1]))
 
-    def _take(self, stream: str, stamp: float, sample: Sample) -> Iterator[Tracked]:
-        """Pass a sample to the tracker of its recording."""
+    def _take(
+        self, stream: str, stamp: float, sample: Sample, last: float | None = None
+    ) -> Iterator[Tracked]:
+        """Pass a sample, or a block up to the stamp `last`, to the tracker of its recording."""
         if self._segmenter.idle:
             published = (self.has_publishers(topic.name) for topic in topics.STREAMS)
             streams = ('markers', 'box', *SIDES, *SIDES)
             self._segmenter.expect(
                 stream for stream, one in zip(streams, published, strict=True) if one
             )
-        return self._feed(self._segmenter.push(stream, stamp, sample))
+        passed = self._segmenter.push(stream, stamp, sample, last)
+        while self._segmenter.notices:
+            self.report_error(self._segmenter.notices.pop(0))
+        return self._feed(passed)
 
     def _feed(self, samples: Iterable[tuple[int, Sample]]) -> Iterator[Tracked]:
         """Pass samples on, or keep them until person and task are known."""
@@ -238,7 +244,7 @@ class TrackerStation(Station):
     def _report_counts(self) -> None:
         if self.tracker is None:
             return
-        for kind, number in self.tracker.counts.items():
+        for kind, number in (self.tracker.counts + self._segmenter.counts).items():
             if number > self.counts[kind]:
                 self.report_error(f'{kind}: {number - self.counts[kind]}')
                 self.counts[kind] = number
