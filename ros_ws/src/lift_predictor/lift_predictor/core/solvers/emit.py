@@ -11,7 +11,7 @@ from typing import Any, Final, NamedTuple
 import casadi as ca
 
 from lift_predictor.core.solvers.constants import c_macros
-from lift_predictor.core.solvers.node_function import DerivedFunction
+from lift_predictor.core.solvers.node_function import Derivatives
 
 CHUNK: Final = 4000
 """Instructions of one C function at most: compilers take long for larger ones."""
@@ -44,13 +44,13 @@ ARGUMENTS: Final = {
 }
 
 
-def library_source(functions: Sequence[DerivedFunction]) -> str:
+def library_source(functions: Sequence[Derivatives]) -> str:
     """C source of all functions, their table `lift_functions` and the constants of the method."""
     parts, entries = [c_macros()], []
     for function in functions:
         names = {}
         # Functions too large to be written out bring their own code (sweeps.py).
-        own_source = getattr(function, 'source', None)
+        own_source = function.source()
         for kind in ARGUMENTS:
             names[kind] = f'{function.name}_{kind}'
             if own_source is not None:
@@ -68,7 +68,7 @@ def library_source(functions: Sequence[DerivedFunction]) -> str:
             parts.append(f'static const int {name}[] = {{{numbers}}};')
             tables.append(name)
         if own_source is not None:
-            parts.append(own_source())
+            parts.append(own_source)
         sizes = (
             function.n_in, function.n_parameters, function.n_g,
             len(function.jacobian_row), len(function.hessian_row),

@@ -15,13 +15,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from human_model.cache import cache_directory
 from lift_predictor.core.solvers import cache
 
 if TYPE_CHECKING:
-    from lift_predictor.core.solvers.node_function import NodeFunction
+    from lift_predictor.core.solvers.node_function import Derivatives, NodeFunction
 
 FLAGS: Final = (
     '-O3', '-march=native', '-fno-math-errno', '-fno-trapping-math', '-fPIC', '-shared',
@@ -63,7 +63,7 @@ class NodeLibrary:
         By name.
     compiled : ctypes.CDLL or None
         The library.
-    virtual : dict of DerivedFunction
+    virtual : dict of Derivatives
         CasADi's functions by name if there is no library; empty otherwise.
     lanes : int
         Nodes that are evaluated at once.
@@ -75,7 +75,7 @@ class NodeLibrary:
 
     functions: dict[str, FunctionFacts]
     compiled: ctypes.CDLL | None
-    virtual: dict[str, Any]
+    virtual: dict[str, Derivatives]
     lanes: int
     build_time: float
     backend: str

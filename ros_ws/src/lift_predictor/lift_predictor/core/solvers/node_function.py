@@ -18,10 +18,59 @@ costs; its constraints are those of all groups, node by node. A function that is
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol, TypeAlias
 
 import casadi as ca
 import numpy as np
+from numpy.typing import NDArray
+
+#: Expressions and functions of CasADi, which has no types.
+Expression: TypeAlias = Any
+Function: TypeAlias = Any
+
+
+class Derivatives(Protocol):
+    """Value and derivatives of a node function, for the C library and the virtual machine.
+
+    Attributes
+    ----------
+    name : str
+        C identifier.
+    value : casadi.Function
+        ((z, s), p) -> cost, g.
+    jacobian_row, jacobian_column, hessian_row, hessian_column : ndarray of int
+        Positions of the nonzeros; those of the Jacobian are sorted by row.
+    """
+
+    name: str
+    value: Function
+    jacobian_row: NDArray[np.int32]
+    jacobian_column: NDArray[np.int32]
+    hessian_row: NDArray[np.int32]
+    hessian_column: NDArray[np.int32]
+
+    @property
+    def first(self) -> Function:
+        """((z, s), p) -> cost, g, gradient of the cost, nonzeros of the Jacobian of g."""
+
+    @property
+    def second(self) -> Function:
+        """((z, s), p, multipliers of cost and g) -> nonzeros of the Hessian's lower triangle."""
+
+    @property
+    def n_in(self) -> int:
+        """Number of inputs in (z, s)."""
+
+    @property
+    def n_parameters(self) -> int:
+        """Number of parameters."""
+
+    @property
+    def n_g(self) -> int:
+        """Number of constraints."""
+
+    def source(self) -> str | None:
+        """C code of the functions NAME_value, NAME_first and NAME_second; None: written out."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,14 +92,14 @@ class NodeFunction:
     """
 
     name: str
-    z: Any
-    s: Any
-    p: Any
-    g: Any
-    cost: Any = 0.0
+    z: Expression
+    s: Expression
+    p: Expression
+    g: Expression
+    cost: Expression = 0.0
     differentiable: bool = True
 
-    def derived(self) -> DerivedFunction:
+    def derived(self) -> Derivatives:
         """Value, first and second derivatives as functions of (z, s), p and multipliers."""
         zs = ca.vertcat(self.z, self.s)
         cost, g = ca.SX(self.cost), ca.SX(self.g)
@@ -76,32 +125,21 @@ class NodeFunction:
         )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class DerivedFunction:
-    """A node function as CasADi functions with all results in one column.
+    """`Derivatives` as CasADi functions with all results in one column.
 
-    Attributes
-    ----------
-    name : str
-        C identifier.
-    value : casadi.Function
-        ((z, s), p) -> cost, g.
-    first : casadi.Function or None
-        ((z, s), p) -> cost, g, gradient of the cost, nonzeros of the Jacobian of g.
-    second : casadi.Function or None
-        ((z, s), p, multipliers of cost and g) -> nonzeros of the Hessian's lower triangle.
-    jacobian_row, jacobian_column, hessian_row, hessian_column : int array
-        Positions of the nonzeros; those of the Jacobian are sorted by row.
+    `first` and `second` are None if the node function is not differentiable.
     """
 
     name: str
-    value: Any
-    first: Any
-    second: Any
-    jacobian_row: Any
-    jacobian_column: Any
-    hessian_row: Any
-    hessian_column: Any
+    value: Function
+    first: Function
+    second: Function
+    jacobian_row: NDArray[np.int32]
+    jacobian_column: NDArray[np.int32]
+    hessian_row: NDArray[np.int32]
+    hessian_column: NDArray[np.int32]
 
     @property
     def n_in(self) -> int:
@@ -118,6 +156,10 @@ class DerivedFunction:
         """Number of constraints."""
         return int(self.value.numel_out(0)) - 1
 
+    def source(self) -> str | None:
+        """Return None: the C code is written out."""
+        return None
 
-def _column(matrix: Any) -> Any:
+
+def _column(matrix: Expression) -> Expression:
     return ca.vertcat(*matrix.nonzeros()) if matrix.nnz() else ca.SX(0, 1)

@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from human_model.typing import Array
 from lift_predictor.core.solvers.layout import Group
 from lift_predictor.core.solvers.library import NodeLibrary
-from lift_predictor.core.solvers.node_function import DerivedFunction
+from lift_predictor.core.solvers.node_function import Derivatives
 
 
 class _VirtualGroup:
     """One group: node functions mapped over its instants, and the matrix of its splines."""
 
-    def __init__(self, group: Group, function: DerivedFunction, n: int, first_row: int) -> None:
+    def __init__(self, group: Group, function: Derivatives, n: int, first_row: int) -> None:
         self.group, self.function = group, function
         points = group.n_points
         self.g = slice(first_row, first_row + points * group.n_g)
