@@ -38,6 +38,7 @@ SUITES: Final[dict[str, dict[str, str]]] = {
     },
     'muscle': {
         'frame': 'benchmarks.muscle',
+        'in_vivo': 'benchmarks.muscle_in_vivo',
         'chain': 'benchmarks.muscle_chain',
         'stations': 'benchmarks.muscle_stations',
     },

@@ -16,6 +16,7 @@ from lifting.lift import Lift
 from lifting.prediction import Prediction
 from muscle_analyzer.core.loads.analysis import MuscleAnalysis
 from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
+from muscle_analyzer.core.loads.equivalent_extensor import equivalent_l5_s1_compression
 from muscle_analyzer.core.loads.lumbar_moments import LumbarMoments, lumbar_moments
 from muscle_analyzer.core.loads.options import MuscleAnalyzerOptions
 from muscle_analyzer.core.loads.torque_limits import JointTorques
@@ -34,6 +35,9 @@ class SpineLoad:
         [s].
     compression, anterior_shear, lateral_shear : ndarray, shape (n,)
         [N].
+    equivalent_compression : ndarray, shape (n,)
+        Compression with one equivalent extensor at 50 mm, as in the models that the limits of
+        compression come from (see `equivalent_extensor`) [N].
     status : ndarray, shape (n,)
         SolveStatus; only samples with status 0 are data.
     peak_compression : float
@@ -46,6 +50,7 @@ class SpineLoad:
     compression: Array
     anterior_shear: Array
     lateral_shear: Array
+    equivalent_compression: Array
     status: IntArray
     peak_compression: float
     report: SolveReport
@@ -95,8 +100,8 @@ class Loads:
         """Load of the L5-S1 disc."""
         a = self.analysis
         return SpineLoad(
-            a.time, a.compression, a.anterior_shear, a.lateral_shear, a.spine_status,
-            a.peak_compression, a.spine_report,
+            a.time, a.compression, a.anterior_shear, a.lateral_shear,
+            equivalent_l5_s1_compression(a), a.spine_status, a.peak_compression, a.spine_report,
         )  # fmt: skip
 
     @property

@@ -50,6 +50,7 @@ def analysis():
         joint_names=('l5_s1', 'hip_r'),
         joint_force=numbers(N, 2, 3),
         joint_moment=-numbers(N, 2, 3),
+        joint_net_force=numbers(N, 2, 3),
         joint_net_moment=numbers(N, 2, 3),
         abdomen_moment=numbers(N, 3),
         lumbar_balance='coupled',

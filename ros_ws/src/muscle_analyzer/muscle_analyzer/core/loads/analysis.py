@@ -71,8 +71,8 @@ class MuscleAnalysis:
     joint_force, joint_moment : (n, n_j, 3)
         Of the lower segment on the upper one, in the joint's anatomical frame (anterior, left,
         cranial) [N, N m]; signs as at L5-S1.
-    joint_net_moment : (n, n_j, 3)
-        Moment of joint and muscles together in the same frames [N m].
+    joint_net_force, joint_net_moment : (n, n_j, 3)
+        Of joint and muscles together in the same frames [N, N m].
     abdomen_moment : (n, 3)
         Of the sacrum on the abdominal body about its joint at L5-S1, in that body's frame
         (anterior, left, cranial) [N m]: the muscles pull on it with the opposite moment.
@@ -123,6 +123,7 @@ class MuscleAnalysis:
     joint_names: tuple[str, ...]
     joint_force: Array
     joint_moment: Array
+    joint_net_force: Array
     joint_net_moment: Array
     abdomen_moment: Array
     lumbar_balance: str

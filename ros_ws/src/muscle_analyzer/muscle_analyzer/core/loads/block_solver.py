@@ -165,6 +165,7 @@ class BlockSolver:
             joint_names=self._loads.joint_names[: self._n_joints],
             joint_force=loads.joint_force[:, : self._n_joints],
             joint_moment=loads.joint_moment[:, : self._n_joints],
+            joint_net_force=loads.joint_net_force[:, : self._n_joints],
             joint_net_moment=loads.joint_net_moment[:, : self._n_joints],
             # No joint, no moment: models without an abdominal body.
             abdomen_moment=loads.joint_moment[:, self._n_joints :].sum(axis=1),

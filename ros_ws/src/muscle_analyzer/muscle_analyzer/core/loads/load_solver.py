@@ -38,7 +38,7 @@ from muscle_analyzer.core.multibody.joint_reaction import NetMoment
 from muscle_analyzer.core.multibody.model import MultibodyModel
 from muscle_analyzer.core.muscles.curves import MuscleParameters
 from muscle_analyzer.core.muscles.path_table import path_table
-from muscle_analyzer.core.recruitment.reserves import read_reserves
+from muscle_analyzer.core.recruitment.reserves import Reserve, read_reserves
 from muscle_analyzer.core.recruitment.static_optimization import MuscleBalance, StaticOptimization
 from muscle_analyzer.core.recruitment.weights import least_activations, muscle_weights
 
@@ -90,6 +90,8 @@ class LoadSolver:
         The subject's model; states are those of its coordinates.
     options
         Settings.
+    reserves : tuple of Reserve, optional
+        In place of those of the tables, one for each coordinate to balance.
 
     Attributes
     ----------
@@ -104,7 +106,12 @@ class LoadSolver:
         If an option or the table of reserves cannot be used.
     """
 
-    def __init__(self, model: MultibodyModel, options: MuscleAnalyzerOptions) -> None:
+    def __init__(
+        self,
+        model: MultibodyModel,
+        options: MuscleAnalyzerOptions,
+        reserves: tuple[Reserve, ...] | None = None,
+    ) -> None:
         self.disc = disc_option(options.disc_frame)
         self.lumbar_balance = lumbar_balance(options.lumbar_balance)
         self.abdomen = abdomen_support(options.abdomen)
@@ -123,7 +130,7 @@ class LoadSolver:
         self.lumbosacral = frames.joints.lumbosacral
         self.optimization = StaticOptimization(
             self.muscle_names,
-            read_reserves(self.coordinate_names, levels=levels),
+            reserves or read_reserves(self.coordinate_names, levels=levels),
             options.static_optimization,
             muscle_weights(muscles, options.muscle_weighting),
             least_activations(self.muscle_names, options.abdominal_activation),

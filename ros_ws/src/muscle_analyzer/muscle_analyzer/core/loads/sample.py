@@ -154,7 +154,7 @@ def compute_sample_loads(
     )  # fmt: skip
     joint_loads(
         model.joints, joint_wrench, state.joint_position, state.rotation, workspace.disc,
-        workspace.net_force, out.joint_net_moment[k],
+        out.joint_net_force[k], out.joint_net_moment[k],
     )  # fmt: skip
     centre = state.joint_position[l5]
     refer_wrench(joint_wrench[l5], centre, workspace.net[0])

@@ -99,8 +99,6 @@ class Workspace(NamedTuple):
         Ground <- L5-S1 disc.
     net : (2, 6)
         Wrenches at L5-S1: of what it carries, and of what is left over at the root.
-    net_force : (n_j, 3)
-        Net forces at the joints [N].
     """
 
     q: Array
@@ -121,7 +119,6 @@ class Workspace(NamedTuple):
     reaction: Array
     disc: Array
     net: Array
-    net_force: Array
 
 
 def allocate_workspace(model: SampleModel) -> Workspace:
@@ -149,7 +146,6 @@ def allocate_workspace(model: SampleModel) -> Workspace:
         reaction=np.empty((n_b, 6)),
         disc=np.empty((3, 3)),
         net=np.empty((2, 6)),
-        net_force=np.empty((model.joints.body.size, 3)),
     )
 
 
@@ -179,8 +175,8 @@ class SampleLoads(NamedTuple):
         Rotation ground <- L5-S1 disc, and in the last column the joint's centre [m].
     joint_force, joint_moment : (n, n_j, 3)
         Loads of all joints in their anatomical frames [N, N m]; L5-S1's are those of its disc.
-    joint_net_moment : (n, n_j, 3)
-        Net moments, of joint and muscles together, in the same frames [N m].
+    joint_net_force, joint_net_moment : (n, n_j, 3)
+        Of joint and muscles together, in the same frames [N, N m].
     net_moment : (n, 2, 3)
         Net moment at L5-S1, top-down and bottom-up [N m].
     pelvis_residual : (n, 6)
@@ -203,6 +199,7 @@ class SampleLoads(NamedTuple):
     disc_pose: Array
     joint_force: Array
     joint_moment: Array
+    joint_net_force: Array
     joint_net_moment: Array
     net_moment: Array
     pelvis_residual: Array
@@ -224,8 +221,8 @@ class SampleLoads(NamedTuple):
         """Set to NaN the results that depend on motion and external forces alone."""
         if samples:
             for array in (
-                self.torque, self.joint_net_moment, self.net_moment, self.pelvis_residual,
-                self.disc_pose,
+                self.torque, self.joint_net_force, self.joint_net_moment, self.net_moment,
+                self.pelvis_residual, self.disc_pose,
             ):  # fmt: skip
                 array[samples] = np.nan
 
@@ -258,6 +255,7 @@ def allocate_loads(model: SampleModel, n: int) -> SampleLoads:
         disc_pose=np.empty((n, 3, 4)),
         joint_force=np.empty((n, n_j, 3)),
         joint_moment=np.empty((n, n_j, 3)),
+        joint_net_force=np.empty((n, n_j, 3)),
         joint_net_moment=np.empty((n, n_j, 3)),
         net_moment=np.empty((n, 2, 3)),
         pelvis_residual=np.empty((n, 6)),
