@@ -7,9 +7,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, Self, TypeVar
 
 from human_model.exceptions import FieldError, LiftingError
+
+T = TypeVar('T')
 
 
 class Fields:
@@ -144,8 +146,10 @@ class Fields:
             raise self.error(key, f'true or false is needed, found {value!r}')
         return value
 
-    def choice(self, key: str, choices: Mapping[str, int]) -> int:
-        """Take one of several names; return the number of the name."""
+    def choice(self, key: str, choices: Mapping[str, T], *default: T) -> T:
+        """Take one of several names; return the value of the name."""
+        if default and key not in self:
+            return default[0]
         value = self.take(key)
         if value not in choices:
             raise self.error(key, f'{value!r} is not one of {", ".join(choices)}')

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from human_model.exceptions import SubjectError
+from human_model.fields import Fields
 
 SEXES = ('male', 'female')
 
@@ -213,3 +214,22 @@ class Subject:
             values['calibration'] = Calibration.from_dict(calibration)
         values['lengths'] = values.get('lengths') or {}
         return cls(**values)
+
+
+def read_subject(fields: Fields) -> Subject:
+    """Take the fields of a person; another field is an error."""
+    pseudonym = fields.text('pseudonym')
+    if not pseudonym:
+        raise fields.error('pseudonym', 'is empty')
+    lengths = fields.section('segment_lengths', {})
+    subject = Subject(
+        pseudonym=pseudonym,
+        sex=fields.choice('sex', {sex: sex for sex in SEXES}),
+        mass=fields.within('mass', RANGES['mass']),
+        stature=fields.within('stature', RANGES['stature']),
+        age=fields.within('age', RANGES['age']),
+        strength_z=fields.within('strength_z', RANGES['strength_z'], 0.0),
+        lengths={name: lengths.within(name, (*LENGTH_RANGE, 'm')) for name in lengths.names()},
+    )
+    fields.finish()
+    return subject

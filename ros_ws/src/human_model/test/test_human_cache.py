@@ -98,7 +98,7 @@ def test_file_that_changed_since_the_start_gives_a_hash_of_this_process_only(pac
 
 def test_compiled_functions_of_the_packages_depend_on_the_modules_they_call():
     found = {Path(path).name for path in source_files(PACKAGE / 'compiled_blocks.py')}
-    assert {'compiled.py', 'compiled_quaternions.py', 'tree.py'} <= found
+    assert {'compiled.py', 'tree.py'} <= found
 
 
 def test_old_entries_are_removed_except_the_last_used(tmp_path):

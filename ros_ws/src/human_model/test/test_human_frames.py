@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from human_model import compiled_quaternions, frames
+from human_model import compiled_blocks, frames
 from human_model.exceptions import HumanModelError
 
 components = st.floats(-1e3, 1e3)
@@ -80,5 +80,5 @@ def test_compiled_quaternions_are_those_of_the_plain_function():
     q = rng.normal(size=(200, 4))
     half_turns = np.vstack([np.eye(4), [[1.0, 1.0, 0.0, 0.0], [0.0, 1.0, 1.0, 1e-9]]])
     rotation = frames.matrix_from_quaternion(np.vstack([q, half_turns]))
-    compiled = compiled_quaternions.quaternions(rotation)
+    compiled = compiled_blocks.quaternions(rotation)
     np.testing.assert_allclose(compiled, frames.quaternion_from_matrix(rotation), atol=1e-12)

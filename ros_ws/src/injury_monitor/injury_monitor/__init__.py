@@ -6,7 +6,7 @@ Names are imported when they are first used, so that a node starts fast.
 
 Examples
 --------
->>> monitor = InjuryMonitor(work=work)
+>>> monitor = InjuryMonitor(assignment=assignment)
 >>> events = monitor.update_spine_load(0.00, compression=3600.0, anterior_shear=400.0, solved=True)
 >>> limits_for(loads_per_day=50).compression_action.value
 3400.0
@@ -23,13 +23,14 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from human_model.task import Coupling, Work
     from injury_monitor.core.alarm import AlarmState, Trigger
     from injury_monitor.core.alarm_event import AlarmEvent
     from injury_monitor.core.alarm_settings import AlarmSettings
     from injury_monitor.core.assessment import Criterion, RiskAssessment, assess_lift
+    from injury_monitor.core.assignment import Assignment
     from injury_monitor.core.exceptions import InjuryMonitorError
     from injury_monitor.core.lifting_equation import (
-        Coupling,
         LiftingEquation,
         LiftingTask,
         lifting_equation,
@@ -39,13 +40,13 @@ if TYPE_CHECKING:
     from injury_monitor.core.loads import ActivationSeries, LiftLoads, TorqueSeries
     from injury_monitor.core.monitor import InjuryMonitor
     from injury_monitor.core.rnle_assessment import LiftEnds
-    from injury_monitor.core.work import Work
 
 __all__ = [
     'ActivationSeries',
     'AlarmEvent',
     'AlarmSettings',
     'AlarmState',
+    'Assignment',
     'Coupling',
     'Criterion',
     'InjuryMonitor',
@@ -72,6 +73,7 @@ _MODULES = {
     'AlarmEvent': 'alarm_event',
     'AlarmSettings': 'alarm_settings',
     'AlarmState': 'alarm',
+    'Assignment': 'assignment',
     'Coupling': 'lifting_equation',
     'Criterion': 'assessment',
     'InjuryMonitor': 'monitor',
@@ -86,7 +88,7 @@ _MODULES = {
     'RiskAssessment': 'assessment',
     'TorqueSeries': 'loads',
     'Trigger': 'alarm',
-    'Work': 'work',
+    'Work': 'assignment',
     'Zone': 'limits',
     'assess_lift': 'assessment',
     'lifting_equation': 'lifting_equation',

@@ -9,17 +9,17 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from human_model.task import Coupling, Work
 from human_model.typing import BoolArray
 from injury_monitor.core.alarm_event import AlarmEvent
 from injury_monitor.core.assessment import RiskAssessment
+from injury_monitor.core.assignment import Assignment
 from injury_monitor.core.exceptions import InvalidInputError
 from injury_monitor.core.lift_parts import MEASURED, PREDICTED, SpineSeries
-from injury_monitor.core.lifting_equation import Coupling
 from injury_monitor.core.lifting_geometry import LiftEnd
 from injury_monitor.core.loads import ActivationSeries, TorqueSeries
 from injury_monitor.core.rnle_assessment import LiftEnds
 from injury_monitor.core.validation import FloatArray
-from injury_monitor.core.work import Work
 from lifting_messages.message_types import Message, make, message_type
 from lifting_messages.names import split
 from lifting_messages.stamps import header, to_seconds, to_stamp
@@ -47,7 +47,7 @@ def lift_source(message: Message) -> str:
     return _SOURCES[message.source]
 
 
-def work_from_msg(subject: Message, task: Message) -> Work:
+def assignment_from_msg(subject: Message, task: Message) -> Assignment:
     """Return person and task; the recording is named by the task and its stamp of entry."""
     try:
         coupling = Coupling(task.coupling)
@@ -55,16 +55,18 @@ def work_from_msg(subject: Message, task: Message) -> Work:
         raise InvalidInputError(
             'Task.coupling', task.coupling, 'must be good, fair or poor'
         ) from error
-    return Work(
+    return Assignment(
         recording=f'{task.task_id}@{to_seconds(task.header.stamp):.3f}',
         subject=subject.pseudonym,
         body_mass=subject.mass,
         box_mass=task.box_mass,
-        lifts_per_day=task.lifts_per_day,
-        lifts_per_minute=task.lifts_per_minute,
-        duration_hours=task.duration_hours,
-        coupling=coupling,
-        control_at_destination=task.control_at_destination,
+        work=Work(
+            task.lifts_per_day,
+            task.lifts_per_minute,
+            task.duration_hours,
+            coupling,
+            task.control_at_destination,
+        ),
     )
 
 
@@ -189,7 +191,7 @@ def states_to_msg(events: Sequence[AlarmEvent], filter_delay: float, unjournaled
 
 def assessment_to_msg(result: RiskAssessment, start: float) -> Message:
     """Return the message of an assessment; ``start`` is the start of the lift [s]."""
-    work, lifting = result.work, result.lifting
+    assignment, lifting = result.assignment, result.lifting
     equation = lifting.result()
     held = result.activation_index.get(MEASURED)
     muscle, activation, _ = held.worst() if held is not None else ('', math.nan, math.nan)
@@ -199,9 +201,9 @@ def assessment_to_msg(result: RiskAssessment, start: float) -> Message:
         'RiskAssessment',
         header=header(start),
         lift_id=result.lift_id,
-        subject=work.subject,
-        body_mass=work.body_mass,
-        box_mass=work.box_mass,
+        subject=assignment.subject,
+        body_mass=assignment.body_mass,
+        box_mass=assignment.box_mass,
         lifts_per_day=result.limits.loads_per_day,
         criterion=[row.criterion for row in rows_],
         source=[row.source for row in rows_],

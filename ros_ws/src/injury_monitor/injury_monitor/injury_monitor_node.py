@@ -127,7 +127,7 @@ class InjuryMonitorNode(PipelineNode):
     def _configure(self) -> None:
         if self._subject is None or self._task is None:
             return
-        limits = self.monitor.configure(conversions.work_from_msg(self._subject, self._task))
+        limits = self.monitor.configure(conversions.assignment_from_msg(self._subject, self._task))
         self.get_logger().info(
             f'limits: compression {limits.compression_action.value:g} and '
             f'{limits.compression_maximum.value:g} N, anterior shear {limits.shear.value:g} N '
@@ -219,7 +219,7 @@ class InjuryMonitorNode(PipelineNode):
 
     def _ready_for_samples(self, later: Callable[[], None]) -> bool:
         """Return whether live samples can be judged; keep those that overtake person and task."""
-        if self.active and self.monitor.work is not None:
+        if self.active and self.monitor.assignment is not None:
             return True
         self.counts['samples before person and task or while not active'] += 1
         if self.active:
@@ -235,7 +235,7 @@ class InjuryMonitorNode(PipelineNode):
         self._assess_ready()
 
     def _assess_ready(self) -> None:
-        if not self.active or self.monitor.work is None:
+        if not self.active or self.monitor.assignment is None:
             return
         for parts in self._collector.ready(time.monotonic()):
             try:

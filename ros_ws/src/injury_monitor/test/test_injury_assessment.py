@@ -8,20 +8,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from human_model.task import Coupling, Work
+from injury_monitor.core.assignment import Assignment
 from injury_monitor.core.exceptions import InvalidInputError
-from injury_monitor.core.lifting_equation import Coupling
 from injury_monitor.core.lifting_geometry import LiftEnd
 from injury_monitor.core.limits import Zone
 from injury_monitor.core.loads import ActivationSeries, LiftLoads, TorqueSeries
 from injury_monitor.core.monitor import InjuryMonitor
 from injury_monitor.core.rnle_assessment import LiftEnds
-from injury_monitor.core.work import Work
 
 TIME = 10.0 + np.arange(0.0, 1.201, 0.01)
 GOOD = np.ones(len(TIME), bool)
 BUMP = np.sin(np.pi * (TIME - 10.0) / 1.2)
 # Thesis chapter IV: 63.5 kg, peaks of the 12 kg lift 2390 N and 796 N.
-WORK = Work('symmetric_12kg', 'P01', 63.5, 12.0, 500.0, 0.2, 1.0, Coupling.GOOD)
+ASSIGNMENT = Assignment('symmetric_12kg', 'P01', 63.5, 12.0, Work(500.0, 0.2, 1.0, Coupling.GOOD))
 
 
 def loads(compression, shear, **parts):
@@ -36,9 +36,14 @@ def loads(compression, shear, **parts):
     )
 
 
-def assess(measured, predicted=None, ends=None, work=WORK):
+def working(**changes):
+    """Return the assignment with changed work."""
+    return replace(ASSIGNMENT, work=replace(ASSIGNMENT.work, **changes))
+
+
+def assess(measured, predicted=None, ends=None, assignment=ASSIGNMENT):
     target = InjuryMonitor()
-    target.configure(work)
+    target.configure(assignment)
     return target.assess(measured, predicted, ends)
 
 
@@ -130,7 +135,7 @@ def test_lifting_equation_at_both_ends():
     far_up = ends(low=0.75, high=1.6)
     assert assess(loads(2000.0, 500.0), ends=far_up).lifting.governing == 'origin'
     controlled = assess(
-        loads(2000.0, 500.0), ends=far_up, work=replace(WORK, control_at_destination=True)
+        loads(2000.0, 500.0), ends=far_up, assignment=working(control_at_destination=True)
     ).lifting
     assert controlled.governing == 'destination'
     assert controlled.result() is controlled.destination
@@ -140,18 +145,23 @@ def test_lifting_equation_at_both_ends():
 @pytest.mark.parametrize(
     ('change', 'reason'),
     [
-        ({'box_mass': 0.0}, 'nothing is lifted'),
         ({'duration_hours': 0.0}, 'duration_hours'),
         ({'lifts_per_minute': math.nan}, 'lifts_per_minute'),
     ],
 )
 def test_no_lifting_index_without_its_inputs(change, reason):
-    lifting = assess(loads(2000.0, 500.0), ends=ends(), work=replace(WORK, **change)).lifting
+    lifting = assess(loads(2000.0, 500.0), ends=ends(), assignment=working(**change)).lifting
     assert reason in lifting.note and math.isnan(lifting.lifting_index)
 
 
+def test_no_lifting_index_without_a_box():
+    empty = replace(ASSIGNMENT, box_mass=0.0)
+    lifting = assess(loads(2000.0, 500.0), ends=ends(), assignment=empty).lifting
+    assert 'nothing is lifted' in lifting.note and math.isnan(lifting.lifting_index)
+
+
 def test_more_loads_than_the_source_covers_is_said():
-    result = assess(loads(2000.0, 500.0), work=replace(WORK, lifts_per_day=2000.0))
+    result = assess(loads(2000.0, 500.0), assignment=working(lifts_per_day=2000.0))
     assert any('2000 loads a day' in note for note in result.notes)
 
 

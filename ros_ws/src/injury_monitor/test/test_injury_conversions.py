@@ -21,10 +21,10 @@ from lifting_interfaces.msg import (
 )
 from rclpy.serialization import serialize_message
 
+from human_model.task import Coupling
 from injury_monitor import conversions
 from injury_monitor.core.alarm import AlarmState
 from injury_monitor.core.exceptions import InvalidInputError
-from injury_monitor.core.lifting_equation import Coupling
 from injury_monitor.core.loads import LiftLoads
 from injury_monitor.core.monitor import InjuryMonitor
 from lifting_messages import decode
@@ -62,13 +62,13 @@ def measured_lift():
     return stamped(MeasuredLift(lift_id='lift_001', duration=1.0, motion=motion), 10.0)
 
 
-def test_work_has_everything_and_a_recording_name_of_its_own():
-    work = conversions.work_from_msg(SUBJECT, stamped(TASK, 12.5))
-    assert (work.subject, work.body_mass, work.box_mass) == ('P01', 63.5, 12.0)
-    assert (work.lifts_per_day, work.coupling) == (500.0, Coupling.FAIR)
-    assert work.recording == 'symmetric_12kg@12.500'
+def test_assignment_has_everything_and_a_recording_name_of_its_own():
+    found = conversions.assignment_from_msg(SUBJECT, stamped(TASK, 12.5))
+    assert (found.subject, found.body_mass, found.box_mass) == ('P01', 63.5, 12.0)
+    assert (found.work.lifts_per_day, found.work.coupling) == (500.0, Coupling.FAIR)
+    assert found.recording == 'symmetric_12kg@12.500'
     with pytest.raises(InvalidInputError, match=r'Task\.coupling'):
-        conversions.work_from_msg(SUBJECT, Task(task_id='t', coupling=0))
+        conversions.assignment_from_msg(SUBJECT, Task(task_id='t', coupling=0))
 
 
 def test_spine_load_with_status_per_sample():
@@ -189,7 +189,7 @@ def test_ends_of_a_lift_are_taken_at_its_start_and_end():
 
 def test_alarm_message_carries_value_limit_margin_and_codes_of_the_interface():
     monitor = InjuryMonitor('cell_1')
-    monitor.configure(conversions.work_from_msg(SUBJECT, TASK))
+    monitor.configure(conversions.assignment_from_msg(SUBJECT, TASK))
     events = []
     for k in range(10):
         events += monitor.update_spine_load(5.0 + k / 100.0, 4000.0, 0.0, True, 'lift_001')
@@ -212,7 +212,7 @@ def test_state_codes_agree_with_the_interface(state):
 
 def test_assessment_message_stands_alone():
     monitor = InjuryMonitor()
-    monitor.configure(conversions.work_from_msg(SUBJECT, TASK))
+    monitor.configure(conversions.assignment_from_msg(SUBJECT, TASK))
     time = 10.0 + np.arange(11) / 10.0
     bump = np.sin(np.pi * (time - 10.0))
     good = np.ones(11, bool)

@@ -11,16 +11,16 @@ from pathlib import Path
 import apsw
 import pytest
 
+from human_model.task import Coupling, Work
 from injury_monitor.core.alarm import AlarmState, Trigger
+from injury_monitor.core.assignment import Assignment
 from injury_monitor.core.exceptions import JournalError, JournalInUseError
 from injury_monitor.core.journal import AlarmJournal
-from injury_monitor.core.lifting_equation import Coupling
 from injury_monitor.core.monitor import InjuryMonitor
-from injury_monitor.core.work import Work
 
 HIGH = 'l5_s1_compression_high'
 HIGH_HIGH = 'l5_s1_compression_high_high'
-WORK = Work('bag_1', 'P01', 70.0, 12.0, 50.0, 1.0, 1.0, Coupling.FAIR)
+ASSIGNMENT = Assignment('bag_1', 'P01', 70.0, 12.0, Work(50.0, 1.0, 1.0, Coupling.FAIR))
 
 
 class Clock:
@@ -35,8 +35,8 @@ class Clock:
 
 def heavy(target, start=0.0, compression=7000.0, count=50):
     """Feed half a second of one load; return the events."""
-    if target.work is None:
-        target.configure(WORK)
+    if target.assignment is None:
+        target.configure(ASSIGNMENT)
     events = []
     for k in range(count):
         events += target.update_spine_load(start + k / 100.0, compression, 0.0, True)
@@ -93,7 +93,7 @@ def test_states_go_on_after_a_restart(path):
     events += monitor.command(Trigger.SHELVE, HIGH, 'panel', duration=600.0)
     written(path, events)
     with AlarmJournal(path) as journal:
-        restarted = InjuryMonitor(history=journal.events(), clock=clock, work=WORK)
+        restarted = InjuryMonitor(history=journal.events(), clock=clock, assignment=ASSIGNMENT)
     assert restarted.states() == monitor.states()
     assert restarted.states()[HIGH_HIGH] is AlarmState.LATCHED_ACKNOWLEDGED
     assert restarted.states()[HIGH] is AlarmState.SHELVED

@@ -13,17 +13,19 @@ from lifting_interfaces.msg import (  # noqa: E402
 )
 from lifting_interfaces.srv import AcknowledgeAlarm, ResetAlarm  # noqa: E402
 
+from human_model.task import Coupling, Work  # noqa: E402
+from injury_monitor.core.assignment import Assignment  # noqa: E402
 from injury_monitor.core.journal import AlarmJournal  # noqa: E402
-from injury_monitor.core.lifting_equation import Coupling  # noqa: E402
 from injury_monitor.core.monitor import InjuryMonitor  # noqa: E402
-from injury_monitor.core.work import Work  # noqa: E402
 
 HIGH, HIGH_HIGH = 'l5_s1_compression_high', 'l5_s1_compression_high_high'
 
 
 def filler():
     """Return events that fill more than a page of a journal."""
-    monitor = InjuryMonitor(work=Work('filler', 'P01', 70.0, 12.0, 50.0, 1.0, 1.0, Coupling.FAIR))
+    monitor = InjuryMonitor(
+        assignment=Assignment('filler', 'P01', 70.0, 12.0, Work(50.0, 1.0, 1.0, Coupling.FAIR))
+    )
     events = []
     for k in range(50):
         events += monitor.update_spine_load(k / 100.0, 7000.0, 0.0, True)

@@ -9,9 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from human_model.task import Coupling
 from injury_monitor.core import lifting_equation as rnle
 from injury_monitor.core.exceptions import InvalidInputError
-from injury_monitor.core.lifting_equation import Coupling, LiftingTask, lifting_equation
+from injury_monitor.core.lifting_equation import LiftingTask, lifting_equation
 from injury_monitor.core.lifting_geometry import LiftEnd, forward_direction, lifting_task
 
 INCH = 2.54

@@ -8,7 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from human_model.task import Coupling, Work
 from injury_monitor.core.alarm import AlarmState, Trigger
+from injury_monitor.core.assignment import Assignment
 from injury_monitor.core.exceptions import (
     AlarmCommandError,
     InjuryMonitorError,
@@ -17,19 +19,18 @@ from injury_monitor.core.exceptions import (
     ShelveDurationError,
     UnknownAlarmError,
 )
-from injury_monitor.core.lifting_equation import Coupling
 from injury_monitor.core.monitor import InjuryMonitor
-from injury_monitor.core.work import Work
 
 HIGH = 'l5_s1_compression_high'
 HIGH_HIGH = 'l5_s1_compression_high_high'
 SHEAR = 'l5_s1_anterior_shear_high'
-WORK = Work('bag_1', 'P01', 70.0, 12.0, 50.0, 1.0, 1.0, Coupling.FAIR)
+ASSIGNMENT = Assignment('bag_1', 'P01', 70.0, 12.0, Work(50.0, 1.0, 1.0, Coupling.FAIR))
+FREQUENT = Work(500.0, 1.0, 1.0)
 RATE = 100.0
 
 
-def monitor(work=WORK, **options):
-    return InjuryMonitor('cell_1', work=work, **options)
+def monitor(assignment=ASSIGNMENT, **options):
+    return InjuryMonitor('cell_1', assignment=assignment, **options)
 
 
 def lift(peak, duration=2.0, rest=600.0, before=1.0, after=2.0):
@@ -125,7 +126,7 @@ def test_beyond_the_maximum_permissible_limit_it_latches():
 def test_shear_limit_follows_the_loads_a_day():
     stamps, shear = lift(850.0, rest=100.0)
     assert feed(monitor(), stamps, np.zeros(len(stamps)), shear) == []
-    frequent = monitor(replace(WORK, lifts_per_day=500.0))
+    frequent = monitor(replace(ASSIGNMENT, work=FREQUENT))
     raised = feed(frequent, stamps, np.zeros(len(stamps)), shear)[0]
     assert (raised.alarm, raised.limit) == (SHEAR, 700.0)
 
@@ -206,7 +207,7 @@ def test_another_recording_with_the_same_clock_is_new():
     stamps, load = lift(4500.0)
     target = monitor()
     first = of(feed(target, stamps, load), HIGH)
-    target.configure(replace(WORK, recording='bag_2'))
+    target.configure(replace(ASSIGNMENT, recording='bag_2'))
     second = of(feed(target, stamps, load), HIGH)
     assert [event.trigger for event in second] == [event.trigger for event in first]
     assert not {event.occurrence for event in first} & {event.occurrence for event in second}
@@ -335,11 +336,11 @@ def test_stored_data_carry_the_mark():
 
 def test_limits_may_change_while_an_alarm_is_active():
     """A shear alarm active under 700 N stays until the data clear it under 1000 N."""
-    target = monitor(replace(WORK, lifts_per_day=500.0))
+    target = monitor(replace(ASSIGNMENT, work=FREQUENT))
     stamps = np.arange(100) / RATE
     feed(target, stamps, np.zeros(100), np.full(100, 850.0))
     assert target.states()[SHEAR] is AlarmState.UNACKNOWLEDGED_ACTIVE
-    target.configure(WORK)
+    target.configure(ASSIGNMENT)
     assert target.states()[SHEAR] is AlarmState.UNACKNOWLEDGED_ACTIVE
     (cleared,) = feed(target, stamps + 1.0, np.zeros(100), np.full(100, 850.0))
     assert cleared.trigger is Trigger.CLEAR and cleared.limit == 1000.0
@@ -352,11 +353,8 @@ def test_bad_input_is_refused():
         monitor().update_spine_load(math.nan, 0.0, 0.0, True)
     with pytest.raises(InvalidInputError, match='torque'):
         monitor().update_joint_torques(0.0, ('hip',), [1.0, 2.0], [0.0], [0.0], True)
-    for field, value in (
-        ('subject', ''),
-        ('body_mass', 0.0),
-        ('box_mass', -1.0),
-        ('lifts_per_day', math.nan),
-    ):
+    for field, value in (('subject', ''), ('body_mass', 0.0), ('box_mass', -1.0)):
         with pytest.raises(InvalidInputError, match=field):
-            replace(WORK, **{field: value})
+            replace(ASSIGNMENT, **{field: value})
+    with pytest.raises(InvalidInputError, match='lifts_per_day'):
+        replace(ASSIGNMENT, work=Work(lifts_per_day=math.nan))

@@ -196,7 +196,7 @@ def test_node_can_be_cleaned_up_and_configured_again(station):
     assert station.transition(Transition.TRANSITION_CONFIGURE)
     assert station.transition(Transition.TRANSITION_ACTIVATE)
     # Person and task are latched: the new subscriptions get them again.
-    station.until(lambda: station.node.monitor.work is not None, 'configuration')
+    station.until(lambda: station.node.monitor.assignment is not None, 'configuration')
     assert station.alarms == []
     station.live(20.0, [7000.0] * 50)
     station.until(lambda: len(station.alarms) == 2, 'alarms after the second configuration')

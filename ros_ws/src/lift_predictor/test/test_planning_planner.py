@@ -149,7 +149,7 @@ def change_example(tmp_path: Path, old: str, new: str) -> Path:
 @pytest.mark.parametrize(
     ('old', 'new', 'words'),
     [
-        ('mass: 63.5', 'mass: 63500', r'subject: subject\.mass: 63500'),
+        ('mass: 63.5', 'mass: 63500', r'subject\.mass: 63500'),
         ('sex: male', 'sex: unknown', r"subject\.sex: .*'unknown'"),
         ('box_mass: 12.0', 'box_mass: heavy', r"task\.box_mass: .*'heavy'"),
         ('feet: [0.0, 0.0]', 'feet: here', r"task\.feet: .*'here'"),

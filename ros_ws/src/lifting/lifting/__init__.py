@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from human_model.motion import BodyMotion
     from human_model.skeletons import Skeleton3D
     from human_model.subject import Subject
-    from injury_monitor.core.lifting_equation import Coupling, LiftingTask, lifting_equation
-    from injury_monitor.core.work import Work
+    from human_model.task import Coupling, Work
+    from injury_monitor.core.lifting_equation import LiftingTask, lifting_equation
     from lift_predictor.core.planning.plan_task import PlanTask
     from lift_predictor.core.problem.task import Box
     from lifting.assessment import assess
@@ -73,7 +73,7 @@ _MODULES = {
     'BodyMotion': 'human_model.motion',
     'Box': 'lift_predictor.core.problem.task',
     'ConventionOptions': 'lifting_recordings.alignment',
-    'Coupling': 'injury_monitor.core.lifting_equation',
+    'Coupling': 'human_model.task',
     'ImportOptions': 'lifting_recordings.importer',
     'IncompleteLiftError': 'lifting.exceptions',
     'IncompleteRecordingError': 'lifting.exceptions',
@@ -87,7 +87,7 @@ _MODULES = {
     'Skeleton3D': 'human_model.skeletons',
     'Subject': 'human_model.subject',
     'Tracking': 'lifting.tracking',
-    'Work': 'injury_monitor.core.work',
+    'Work': 'human_model.task',
     'analyze': 'lifting.loads',
     'assess': 'lifting.assessment',
     'import_recording': 'lifting.importing',

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from injury_monitor.core.assessment import RiskAssessment, assess_lift
+from injury_monitor.core.assignment import Assignment
 from injury_monitor.core.lifting_geometry import LiftEnd
 from injury_monitor.core.limits import limits_for
 from injury_monitor.core.loads import ActivationSeries, LiftLoads, TorqueSeries
@@ -16,7 +17,7 @@ from injury_monitor.core.rnle_assessment import LiftEnds
 from lifting.exceptions import IncompleteLiftError
 
 if TYPE_CHECKING:
-    from injury_monitor.core.work import Work
+    from human_model.task import Work
     from lifting.lift import Lift
     from lifting.loads import Loads
 
@@ -47,7 +48,14 @@ def assess(load: Loads, best: Loads | None = None, work: Work | None = None) -> 
         raise IncompleteLiftError(load.lift.lift_id, 'the work (lifting.Work)')
     limits = limits_for(work.lifts_per_day)
     optimal = None if best is None else _series(best)
-    return assess_lift(work, limits, _series(load), optimal, _ends(load.lift))
+    return assess_lift(
+        _assignment(load.lift, work), limits, _series(load), optimal, _ends(load.lift)
+    )
+
+
+def _assignment(lift: Lift, work: Work) -> Assignment:
+    box_mass = lift.box_mass if lift.box is None else lift.box.mass
+    return Assignment(lift.lift_id, lift.subject.pseudonym, lift.subject.mass, box_mass, work)
 
 
 def _series(load: Loads) -> LiftLoads:

@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from human_model.subject import Subject
+from human_model.task import Work
 from human_model.typing import Array
-from injury_monitor.conversions import work_from_msg
-from injury_monitor.core.work import Work
+from injury_monitor.conversions import assignment_from_msg
 from lift_predictor.conversions import box_from_msg
 from lift_predictor.core.problem.task import Box
 from lifting.exceptions import IncompleteRecordingError
@@ -86,6 +86,6 @@ def load_recording(path: str | Path) -> Recording:
             raise IncompleteRecordingError(path, topic)
     subject, task = entered['subject'], entered['task']
     box = box_from_msg(task, task.box_mass)
-    work = work_from_msg(subject, task)
+    work = assignment_from_msg(subject, task).work
     size = np.asarray(task.box_size, np.float64)
     return Recording(path, subject_from_msg(subject), subject.marker_set, box, size, work)

@@ -111,7 +111,7 @@ class OfflineGraph:
     def _begin(self) -> None:
         if self._subject is None or self._task is None:
             return
-        self._monitor.configure(monitor_messages.work_from_msg(self._subject, self._task))
+        self._monitor.configure(monitor_messages.assignment_from_msg(self._subject, self._task))
         subject = subject_from_msg(self._subject)
         tracker = tracker_from(
             self._tracker_values,

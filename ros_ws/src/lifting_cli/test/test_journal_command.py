@@ -8,17 +8,18 @@ import apsw
 import pyarrow.parquet
 import pytest
 
+from human_model.task import Coupling, Work
+from injury_monitor.core.assignment import Assignment
 from injury_monitor.core.journal import AlarmJournal
-from injury_monitor.core.lifting_equation import Coupling
 from injury_monitor.core.monitor import InjuryMonitor
-from injury_monitor.core.work import Work
 from lifting_cli.cli import main
 
 
 @pytest.fixture
 def path(tmp_path):
     monitor = InjuryMonitor(
-        'cell_3', work=Work('bag', 'P01', 70.0, 12.0, 50.0, 1.0, 1.0, Coupling.FAIR)
+        'cell_3',
+        assignment=Assignment('bag', 'P01', 70.0, 12.0, Work(50.0, 1.0, 1.0, Coupling.FAIR)),
     )
     with AlarmJournal(tmp_path / 'alarms.db') as journal:
         for k in range(50):

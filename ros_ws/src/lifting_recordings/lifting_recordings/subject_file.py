@@ -43,10 +43,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from human_model.fields import Fields
-from human_model.subject import LENGTH_RANGE, RANGES, SEXES, Subject
+from human_model.subject import Subject, read_subject
+from human_model.task import COUPLINGS
 from lifting_recordings.exceptions import SubjectFileError
 
-_COUPLINGS = {'good': 1, 'fair': 2, 'poor': 3}
 _NAN3 = (math.nan, math.nan, math.nan)
 
 
@@ -135,25 +135,8 @@ def read_person(path: str | Path) -> Subject:
 
 
 def _subject(section: _Section) -> tuple[Subject, str]:
-    pseudonym = section.text('pseudonym')
-    if not pseudonym:
-        raise section.error('pseudonym', 'is empty')
-    sex = section.text('sex')
-    if sex not in SEXES:
-        raise section.error('sex', f'{sex!r} is not one of {", ".join(SEXES)}')
-    lengths = section.section('segment_lengths', {})
-    subject = Subject(
-        pseudonym=pseudonym,
-        sex=sex,
-        mass=section.within('mass', RANGES['mass']),
-        stature=section.within('stature', RANGES['stature']),
-        age=section.within('age', RANGES['age']),
-        strength_z=section.within('strength_z', RANGES['strength_z'], 0.0),
-        lengths={name: lengths.within(name, (*LENGTH_RANGE, 'm')) for name in lengths.names()},
-    )
     source = section.text('source', '')
-    section.finish()
-    return subject, source
+    return read_subject(section), source
 
 
 def _task(section: _Section) -> TaskEntry:
@@ -166,7 +149,7 @@ def _task(section: _Section) -> TaskEntry:
         description=section.text('description', ''),
         box_mass=box_mass,
         box_size=size,
-        coupling=section.choice('coupling', _COUPLINGS),
+        coupling=section.choice('coupling', COUPLINGS),
         lifts_per_minute=section.at_least_zero('lifts_per_minute'),
         lifts_per_day=section.at_least_zero('lifts_per_day'),
         duration_hours=section.at_least_zero('duration_hours'),

@@ -98,7 +98,8 @@ def lifting_from_assessment(
 def _variables(index: float, subject: Any, task: Any, measured_lift: Any) -> dict[str, str]:
     try:
         assessed = assess_lifting(
-            conversions.work_from_msg(subject, task), conversions.ends_from_msg(measured_lift)
+            conversions.assignment_from_msg(subject, task),
+            conversions.ends_from_msg(measured_lift),
         )
     except InjuryMonitorError as error:
         return {'task variables': f'not available: {error}'}

@@ -19,7 +19,7 @@ from lift_predictor.core.planning.planned_lift import PlannedLift
 from lift_predictor.core.planning.summary import PlanSummary, summarise
 from lift_predictor.core.planning.task_file import TaskFile
 from lift_predictor.core.problem.run import SolverRun
-from lifting_messages import Message, make, message_type
+from lifting_messages import Message, make
 from lifting_messages.conversions import LABORATORY, point, subject_to_msg
 from lifting_messages.stamps import header
 from lifting_report.exceptions import ReportError
@@ -28,12 +28,6 @@ from muscle_analyzer import conversions as muscle_messages
 from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
 
 STATION = 'planned'
-_TASK = message_type('Task')
-_COUPLINGS = {
-    'good': _TASK.COUPLING_GOOD,
-    'fair': _TASK.COUPLING_FAIR,
-    'poor': _TASK.COUPLING_POOR,
-}
 
 
 @dataclass(frozen=True)
@@ -105,10 +99,11 @@ def task_message(entry: TaskFile, box_mass: float) -> Message:
         box_size=list(task.box_size),
         box_start=start,
         box_end=end,
-        coupling=_COUPLINGS[work.coupling],
+        coupling=int(work.coupling),
         lifts_per_minute=work.lifts_per_minute,
         lifts_per_day=work.lifts_per_day,
         duration_hours=work.duration_hours,
+        control_at_destination=work.control_at_destination,
         simulated=True,
         source='planned without a recording',
     )

@@ -43,7 +43,7 @@ def measured_lift():
 @pytest.fixture
 def message():
     monitor = InjuryMonitor()
-    monitor.configure(conversions.work_from_msg(SUBJECT, TASK))
+    monitor.configure(conversions.assignment_from_msg(SUBJECT, TASK))
     time = np.arange(11) / 10.0
     good = np.ones(11, bool)
     torques = TorqueSeries(

@@ -10,12 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from injury_monitor.core.activation_index import DEFAULT_WINDOW, ActivationIndex, activation_index
+from injury_monitor.core.assignment import Assignment
 from injury_monitor.core.exceptions import InvalidInputError
 from injury_monitor.core.limits import Limit, LimitSet, Zone, zone_meaning
 from injury_monitor.core.loads import LiftLoads
 from injury_monitor.core.rnle_assessment import LiftEnds, LiftingAssessment, assess_lifting
 from injury_monitor.core.torque_index import TorqueIndexPeaks, torque_index_peaks
-from injury_monitor.core.work import Work
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class RiskAssessment:
     Attributes
     ----------
     lift_id : str
-    work : Work
+    assignment : Assignment
     limits : LimitSet
         In force, with their sources.
     criteria : tuple of Criterion
@@ -83,7 +83,7 @@ class RiskAssessment:
     """
 
     lift_id: str
-    work: Work
+    assignment: Assignment
     limits: LimitSet
     criteria: tuple[Criterion, ...]
     avoidable_compression: float
@@ -105,7 +105,7 @@ class RiskAssessment:
 
 
 def assess_lift(
-    work: Work,
+    assignment: Assignment,
     limits: LimitSet,
     measured: LiftLoads,
     predicted: LiftLoads | None = None,
@@ -117,7 +117,7 @@ def assess_lift(
 
     Parameters
     ----------
-    work : Work
+    assignment : Assignment
     limits : LimitSet
     measured, predicted : LiftLoads
         Results of the recorded and of the optimal lift; the latter may be missing.
@@ -154,7 +154,7 @@ def assess_lift(
         else {'measured': measured, 'predicted': predicted}
     )
     for source, lift in lifts.items():
-        criteria += _spine(work, limits, source, lift, notes)
+        criteria += _spine(assignment, limits, source, lift, notes)
         if lift.torques is None:
             notes.append(f'{source}: no joint torques')
         else:
@@ -191,10 +191,10 @@ def assess_lift(
     shears = {entry.source: entry for entry in criteria if entry.criterion == limits.shear.name}
     zone = limits.zone(peaks['measured'].value)
     more_compression = _difference(peaks)
-    lifting = assess_lifting(work, ends)
+    lifting = assess_lifting(assignment, ends)
     return RiskAssessment(
         measured.lift_id,
-        work,
+        assignment,
         limits,
         tuple(criteria),
         more_compression,
@@ -210,7 +210,7 @@ def assess_lift(
 
 
 def _spine(
-    work: Work, limits: LimitSet, source: str, lift: LiftLoads, notes: list[str]
+    assignment: Assignment, limits: LimitSet, source: str, lift: LiftLoads, notes: list[str]
 ) -> list[Criterion]:
     values = {}
     for name, series in (('compression', lift.compression), ('shear', lift.anterior_shear)):
@@ -227,7 +227,9 @@ def _spine(
         (limits.shear, 'shear'),
     )
     return [
-        _criterion(limit, source, *values[name], per_kilogram=values[name][0] / work.body_mass)
+        _criterion(
+            limit, source, *values[name], per_kilogram=values[name][0] / assignment.body_mass
+        )
         for limit, name in pairs
     ]
 

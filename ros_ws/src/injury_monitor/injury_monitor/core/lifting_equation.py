@@ -11,9 +11,9 @@ from __future__ import annotations
 import bisect
 import math
 from dataclasses import dataclass
-from enum import IntEnum
 
 from human_model.tables import read_table
+from human_model.task import COUPLINGS, Coupling
 from injury_monitor.core.exceptions import InvalidInputError
 from injury_monitor.core.validation import finite, non_negative
 
@@ -26,14 +26,6 @@ _V_REFERENCE, _V_SLOPE, _V_MAX = 75.0, 0.003, 175.0
 _D_OFFSET, _D_FACTOR, _D_MIN, _D_MAX = 0.82, 4.5, 25.0, 175.0
 _A_SLOPE, _A_MAX = 0.0032, 135.0
 _LONGEST_DURATION = 8.0
-
-
-class Coupling(IntEnum):
-    """Hand-to-object coupling of NIOSH 94-110, section 1.3.6."""
-
-    GOOD = 1
-    FAIR = 2
-    POOR = 3
 
 
 @dataclass(frozen=True)
@@ -158,7 +150,7 @@ def frequency_multiplier(lifts_per_minute: float, duration_hours: float, vertica
 def coupling_multiplier(coupling: Coupling, vertical: float) -> float:
     """CM of NIOSH 94-110 table 7."""
     rows = read_table('injury_monitor', 'coupling_multipliers.csv', 'coupling low high')
-    row = {row['coupling']: row for row in rows}[Coupling(coupling).name.lower()]
+    row = {row.choice('coupling', COUPLINGS): row for row in rows}[coupling]
     return row.number('low' if vertical < _V_REFERENCE else 'high')
 
 

@@ -17,8 +17,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from human_model.task import Coupling
 from injury_monitor.core.exceptions import InvalidInputError
-from injury_monitor.core.lifting_equation import Coupling, LiftingTask
+from injury_monitor.core.lifting_equation import LiftingTask
 from injury_monitor.core.validation import FloatArray, array
 
 

@@ -17,6 +17,7 @@ from injury_monitor.core.alarm import AlarmState, Trigger
 from injury_monitor.core.alarm_event import AlarmEvent
 from injury_monitor.core.alarm_settings import AlarmSettings, read_alarm_settings
 from injury_monitor.core.assessment import RiskAssessment, assess_lift
+from injury_monitor.core.assignment import Assignment
 from injury_monitor.core.exceptions import (
     InjuryMonitorError,
     OperatorError,
@@ -29,7 +30,6 @@ from injury_monitor.core.rnle_assessment import LiftEnds
 from injury_monitor.core.station_alarm import Sample, StationAlarm
 from injury_monitor.core.torque_index import worst_torque_index
 from injury_monitor.core.validation import all_finite, array, finite, positive
-from injury_monitor.core.work import Work
 
 # Longest shelving [s]: one shift, so that no alarm stays shelved into the next one
 # (engineering choice; ISA-18.2 requires a limit and leaves its length to the plant).
@@ -90,7 +90,7 @@ class InjuryMonitor:
         state after them, and occurrences in them are not announced again.
     clock : callable
         Clock of the station [s since 1970], by which shelving ends.
-    work : Work, optional
+    assignment : Assignment, optional
         Person and task; otherwise `configure` sets them later.
     """
 
@@ -103,7 +103,7 @@ class InjuryMonitor:
         max_shelve: float = DEFAULT_MAX_SHELVE,
         history: Iterable[AlarmEvent] = (),
         clock: Callable[[], float] = time.time,
-        work: Work | None = None,
+        assignment: Assignment | None = None,
     ) -> None:
         self.station = station
         self.settings = tuple(read_alarm_settings() if settings is None else settings)
@@ -115,15 +115,15 @@ class InjuryMonitor:
         self._clock = clock
         self.counts = {stream: StreamCounts() for stream in _STREAMS}
         self.limits: LimitSet | None = None
-        self.work: Work | None = None
+        self.assignment: Assignment | None = None
         self._mean = SlidingMean(activation_window, max_gap)
         self._stamps: dict[str, float] = {}
         self._alarms: dict[str, StationAlarm] = {}
         self._by_quantity: dict[str, list[StationAlarm]] = {}
-        if work is not None:
-            self.configure(work)
+        if assignment is not None:
+            self.configure(assignment)
 
-    def configure(self, work: Work) -> LimitSet:
+    def configure(self, assignment: Assignment) -> LimitSet:
         """Set person and task; alarms keep their state, their limits may change.
 
         Returns
@@ -131,27 +131,27 @@ class InjuryMonitor:
         LimitSet
             The limits now in force.
         """
-        limits = limits_for(work.lifts_per_day)
+        limits = limits_for(assignment.work.lifts_per_day)
         self._by_quantity = {quantity: [] for quantity in _QUANTITIES}
         for settings in self.settings:
             limit = limits.by_name(settings.limit)
             alarm = self._alarms.get(settings.alarm)
             if alarm is None:
                 alarm = StationAlarm(
-                    settings, limit, self.station, work.recording, self.max_gap, self.known
+                    settings, limit, self.station, assignment.recording, self.max_gap, self.known
                 )
                 self._alarms[settings.alarm] = alarm
                 for event in self._history:
                     if event.alarm == settings.alarm:
                         alarm.restore(event)
             else:
-                alarm.set_limit(limit, work.recording)
+                alarm.set_limit(limit, assignment.recording)
             self._by_quantity[limit.quantity].append(alarm)
-        if self.work is not None and work.recording != self.work.recording:
+        if self.assignment is not None and assignment.recording != self.assignment.recording:
             self._stamps.clear()
             self._mean.reset()
         self._history.clear()
-        self.work = work
+        self.assignment = assignment
         self.limits = limits
         return limits
 
@@ -312,18 +312,18 @@ class InjuryMonitor:
         no_prediction: str = '',
     ) -> RiskAssessment:
         """Assess one whole lift; see :func:`injury_monitor.core.assessment.assess_lift`."""
-        work, limits = self._configured()
+        assignment, limits = self._configured()
         return assess_lift(
-            work, limits, measured, predicted, ends, self.activation_window, no_prediction
+            assignment, limits, measured, predicted, ends, self.activation_window, no_prediction
         )
 
     def _latest(self) -> float:
         return max(self._stamps.values(), default=0.0)
 
-    def _configured(self) -> tuple[Work, LimitSet]:
-        if self.work is None or self.limits is None:
+    def _configured(self) -> tuple[Assignment, LimitSet]:
+        if self.assignment is None or self.limits is None:
             raise InjuryMonitorError('no person and task yet: call configure first')
-        return self.work, self.limits
+        return self.assignment, self.limits
 
     def _admit(self, stream: str, stamp: float, good: bool, quantities: Sequence[str]) -> bool:
         """Count a sample; return whether it may drive the alarms of its quantities."""

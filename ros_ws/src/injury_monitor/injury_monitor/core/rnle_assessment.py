@@ -7,6 +7,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from injury_monitor.core.assignment import Assignment
 from injury_monitor.core.exceptions import InvalidInputError
 from injury_monitor.core.lifting_equation import (
     LiftingEquation,
@@ -14,7 +15,6 @@ from injury_monitor.core.lifting_equation import (
     lifting_index_band,
 )
 from injury_monitor.core.lifting_geometry import LiftEnd, forward_direction, lifting_task
-from injury_monitor.core.work import Work
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class LiftingAssessment:
         return self.destination if self.governing == 'destination' else self.origin
 
 
-def assess_lifting(work: Work, ends: LiftEnds | None) -> LiftingAssessment:
+def assess_lifting(assignment: Assignment, ends: LiftEnds | None) -> LiftingAssessment:
     """Evaluate the equation for one lift.
 
     The sagittal direction is that of the feet at the origin, the neutral body position before the
@@ -65,7 +65,7 @@ def assess_lifting(work: Work, ends: LiftEnds | None) -> LiftingAssessment:
 
     Parameters
     ----------
-    work : Work
+    assignment : Assignment
     ends : LiftEnds or None
 
     Returns
@@ -75,7 +75,8 @@ def assess_lifting(work: Work, ends: LiftEnds | None) -> LiftingAssessment:
     """
     if ends is None:
         return _without('the places of hands and ankles are not known')
-    if work.box_mass == 0.0:
+    work = assignment.work
+    if assignment.box_mass == 0.0:
         return _without('nothing is lifted (box mass 0 kg)')
     travel = float(ends.destination.grip[2] - ends.origin.grip[2])
     try:
@@ -85,7 +86,7 @@ def assess_lifting(work: Work, ends: LiftEnds | None) -> LiftingAssessment:
                 lifting_task(
                     end, travel, forward, work.lifts_per_minute, work.duration_hours, work.coupling
                 ),
-                work.box_mass,
+                assignment.box_mass,
             )
             for end in (ends.origin, ends.destination)
         )

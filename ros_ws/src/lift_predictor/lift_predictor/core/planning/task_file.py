@@ -37,33 +37,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from human_model.exceptions import HumanModelError
-from human_model.subject import Subject
+from human_model.subject import Subject, read_subject
+from human_model.task import Work, read_work
 from lift_predictor.core.exceptions import PlanError
 from lift_predictor.core.planning.fields import Fields
 from lift_predictor.core.planning.plan_task import DEFAULT_DURATION, PlanTask, Point
 from lift_predictor.core.planning.technique import FREE
 
 MAXIMUM: Final = 'maximum'
-COUPLINGS: Final = ('good', 'fair', 'poor')
-
-
-@dataclass(frozen=True)
-class Work:
-    """How often the lift is done, and how the box can be grasped.
-
-    Attributes
-    ----------
-    lifts_per_day, lifts_per_minute, duration_hours : float
-        As in `lifting_interfaces/Task`.
-    coupling : str
-        good, fair or poor.
-    """
-
-    lifts_per_day: float = 100.0
-    lifts_per_minute: float = 0.2
-    duration_hours: float = 8.0
-    coupling: str = 'fair'
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,26 +69,11 @@ def read_task_file(path: str | Path) -> TaskFile:
     whole = Fields.read(path)
     subject = read_subject(whole.section('subject'))
     task = read_task(whole.section('task'), path.stem)
-    work = _work(whole.section('work')) if 'work' in whole else Work()
+    section = whole.section('work', {})
+    work = read_work(section, Work())
+    section.finish()
     whole.finish()
     return TaskFile(path, subject, task, work)
-
-
-def read_subject(fields: Fields) -> Subject:
-    """Read one person."""
-    values = {
-        'pseudonym': fields.text('pseudonym'),
-        'sex': fields.text('sex'),
-        'mass': fields.number('mass'),
-        'stature': fields.number('stature'),
-        'age': fields.number('age'),
-        'strength_z': fields.number('strength_z', 0.0),
-    }
-    fields.finish()
-    try:
-        return Subject.from_dict(values)
-    except HumanModelError as error:
-        raise PlanError(f'{fields.source}: {fields.name}: {error}') from error
 
 
 def read_task(fields: Fields, name: str) -> PlanTask:
@@ -150,17 +116,3 @@ def _place(fields: Fields, key: str) -> Point:
 def _again(fields: Fields, key: str, value: object) -> Fields:
     """Put one value back, to be taken as another kind."""
     return Fields(fields.source, fields.name, {key: value})
-
-
-def _work(fields: Fields) -> Work:
-    plain = Work()
-    numbers = {}
-    for key in ('lifts_per_day', 'lifts_per_minute', 'duration_hours'):
-        numbers[key] = fields.number(key, getattr(plain, key))
-        if not numbers[key] >= 0.0:
-            raise fields.error(key, f'{numbers[key]:g} is negative')
-    coupling = fields.text('coupling', plain.coupling)
-    if coupling not in COUPLINGS:
-        raise fields.error('coupling', f'{coupling!r} is not one of {", ".join(COUPLINGS)}')
-    fields.finish()
-    return Work(**numbers, coupling=coupling)

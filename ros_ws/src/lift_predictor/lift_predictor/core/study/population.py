@@ -11,11 +11,10 @@ from typing import Any, Final
 import numpy as np
 
 from human_model.exceptions import HumanModelError, TableError
-from human_model.subject import Subject
+from human_model.subject import Subject, read_subject
 from human_model.tables import Row, read_file
 from lift_predictor.core.exceptions import PlanError
 from lift_predictor.core.planning.fields import Fields
-from lift_predictor.core.planning.task_file import read_subject
 
 MAX_DRAWS: Final = 1000
 """Draws of one person at most before a distribution counts as outside of what is accepted."""
