@@ -21,6 +21,7 @@ from bags.simulate.group import lifting_task, simulated_lift, study_group
 
 from human_model.motion import Lift
 from human_model.subject import Subject
+from human_model.task import Box
 from human_model.typing import Array
 from lift_predictor.core.pareto import (
     ParetoCurve,
@@ -32,7 +33,6 @@ from lift_predictor.core.pareto import (
 from lift_predictor.core.percentile import Percentile, percentile_by_root
 from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.problem.maximum_weight import Weighting
-from lift_predictor.core.problem.task import Box
 
 TASK: Final = 'symmetric_max'
 CORES: Final = 2
@@ -114,7 +114,7 @@ def _worker() -> LiftPredictor:
 def task_box() -> Box:
     """Return the box of the task."""
     task = lifting_task(TASK)
-    return Box(task.box_mass, task.box_size[0])
+    return Box(task.box_mass, task.box_size)
 
 
 def find_man(subject: Subject, weighting: Weighting) -> Man:

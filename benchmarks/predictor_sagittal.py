@@ -22,13 +22,13 @@ from bags.simulate.group import lifting_task, simulated_lift, study_group
 from benchmarks.predictor_pareto import find_man, task_box
 
 from human_model.named_subjects import named_subject
+from human_model.task import Box
 from lift_predictor.core.models.sagittal.grid import LiftBounds
 from lift_predictor.core.models.sagittal.lift_model import COLD, SagittalModel
 from lift_predictor.core.models.sagittal.task import SagittalTask
 from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.problem.maximum_weight import Weighting, heaviest_box
 from lift_predictor.core.problem.run import Start
-from lift_predictor.core.problem.task import Box
 from lift_predictor.core.problem.task_solver import TaskSolver
 from lift_predictor.core.solvers.ipopt import IpoptSolver
 from lift_predictor.core.solvers.solution import Solution
@@ -131,7 +131,7 @@ def run() -> Mapping[str, float]:
     result: dict[str, float] = {}
     for key, name in LIFTS.items():
         described = lifting_task(name)
-        box = Box(described.box_mass, described.box_size[0])
+        box = Box(described.box_mass, described.box_size)
         task = model.recorded_task(subject, simulated_lift(subject, described), box)
         start = smooth_step(task, model)
         result |= pair(key, own, task, start)

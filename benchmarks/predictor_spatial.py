@@ -28,6 +28,7 @@ from human_model.exceptions import HumanModelError
 from human_model.motion import BodyMotion, Lift
 from human_model.named_subjects import named_subject
 from human_model.report import SolveReport
+from human_model.task import Box
 from human_model.typing import Array
 from lift_predictor.core.exceptions import LiftPredictorError
 from lift_predictor.core.models.spatial.frame import StanceFrame
@@ -40,7 +41,6 @@ from lift_predictor.core.options import PredictorOptions
 from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.problem.maximum_weight import Weighting, maximum_weight
 from lift_predictor.core.problem.run import Start
-from lift_predictor.core.problem.task import Box
 from lift_predictor.core.problem.task_solver import HOP_SPREAD, TaskSolver
 from lift_predictor.core.solvers.ipopt import IpoptSolver
 from lift_predictor.core.solvers.solution import Solution
@@ -290,7 +290,7 @@ def run(random_tasks: int = RANDOM_TASKS) -> Mapping[str, float]:
     predictor = LiftPredictor(PredictorOptions(dimension='3d', refinements=5))
     solver, model = predictor.spatial, SpatialModel(predictor.options)
     subject = named_subject('thesis_ch4')
-    box = Box(lift.box_mass, 0.238)
+    box = Box(lift.box_mass, (0.238, 0.305, 0.127))
     task = model.recorded_task(subject, lift, box)
     start = model.starts(task)[0]
     result = pair('3d_fixed', model, task, start)

@@ -19,6 +19,7 @@ from matplotlib.figure import Figure
 
 from human_model.motion import BodyMotion, Lift
 from human_model.subject import Subject
+from human_model.task import Box
 from lift_predictor.core.models.sagittal.lift_model import COMPARED_JOINTS
 from lift_predictor.core.models.sagittal.parameters import JOINTS
 from lift_predictor.core.models.sagittal.task import SagittalTask
@@ -28,7 +29,6 @@ from lift_predictor.core.planning.plan_task import PlanTask
 from lift_predictor.core.planning.planner import LiftPlanner
 from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.problem.prediction import Prediction
-from lift_predictor.core.problem.task import Box
 from lifting_cli.recorded_lifts import recorded_lifts
 from lifting_recordings.reader import BagReader
 from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
@@ -132,7 +132,7 @@ def curves(bag: str) -> tuple[list[Curve], list[Curve]]:
     recording = recorded_lifts(ROOT / 'bags' / bag)
     lift, subject = recording.lift(1).lift, recording.subject
     planner = LiftPlanner()
-    box = Box(mass=mass, depth=size[0])
+    box = Box(mass, size)
     predicted = planner.predictor.predict(subject, lift, box)
     if not predicted.report.ok:
         raise SystemExit(f'{bag}: {predicted.report.message}')

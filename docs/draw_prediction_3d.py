@@ -18,16 +18,16 @@ from matplotlib.figure import Figure
 
 from human_model.motion import BodyMotion, Lift
 from human_model.named_subjects import named_subject
+from human_model.task import Box
 from lift_predictor.core.options import PredictorOptions
 from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.problem.comparison import LiftComparison
 from lift_predictor.core.problem.maximum_weight import maximum_weight
 from lift_predictor.core.problem.prediction import Prediction
-from lift_predictor.core.problem.task import Box
 
 SUBJECT: Final = 'thesis_ch4'
 LIFT: Final = 'asymmetric_7kg'
-DEPTH: Final = 0.238
+SIZE: Final = (0.238, 0.305, 0.127)
 SNAPSHOTS: Final = (0.0, 0.25, 0.5, 0.75, 1.0)
 CHAINS: Final = (
     *(tuple(f'{point}_{side}' for point in ('toe', 'heel', 'ankle', 'knee', 'hip'))
@@ -136,7 +136,7 @@ def maximum(lift: Lift, z: float) -> None:
     """Print the maximum weight of the asymmetric lift for a z-score."""
     subject = replace(named_subject(SUBJECT), strength_z=z)
     solver = LiftPredictor(PredictorOptions(dimension='3d', refinements=5)).spatial
-    task = solver.model.maximum_weight_task(subject, lift, Box(lift.box_mass, DEPTH))
+    task = solver.model.maximum_weight_task(subject, lift, Box(lift.box_mass, SIZE))
     found = maximum_weight(solver, task, solver.model.starts(task)[:1])
     print(f'z = {z:g}: {found.weight:.1f} N, effort {found.effort:.2f} s; heaviest '
           f'{found.normalisation}; {found.prediction.report.message}')  # fmt: skip
@@ -150,7 +150,7 @@ def main() -> None:
     mpl.rcParams.update(STYLE)
     lift = recorded_lift(LIFT)
     predictor = LiftPredictor(PredictorOptions(dimension='3d', refinements=5))
-    predicted = predictor.predict(named_subject(SUBJECT), lift, Box(lift.box_mass, DEPTH))
+    predicted = predictor.predict(named_subject(SUBJECT), lift, Box(lift.box_mass, SIZE))
     comparison = predicted.comparison
     assert predicted.lift is not None and comparison is not None, predicted.report.message
     report(predicted, comparison)

@@ -25,12 +25,13 @@ from bags.simulate.sensors import (
 from bags.simulate.tasks import Stage, Task
 
 from human_model.subject import Calibration, Subject
+from human_model.task import Box, Coupling, Work
+from human_model.task import Task as RecordedTask
 from human_model.typing import Array
 from lifting_recordings.bag_writer import START_TIME_NS, BagWriter, in_order
 from lifting_recordings.importer import marker_stream, plate_stream, pose_stream
 from lifting_recordings.messages import MarkerCalibration, subject_message, task_message
 from lifting_recordings.recording import Recording
-from lifting_recordings.subject_file import TaskEntry
 from motion_tracker.core.calibration import calibrate
 from motion_tracker.core.markers.marker_set import load_marker_set
 
@@ -99,9 +100,9 @@ class Session:
 
     def write_static(self, folder: Path) -> None:
         """Write the static trial as a bag without plates and box."""
-        task = TaskEntry(
-            _ALL, 'quiet standing for the marker calibration', 0.0, (0.0, 0.0, 0.0), 1,
-            0.0, 0.0, 0.0, simulated=True,
+        task = RecordedTask(
+            _ALL, Box(0.0), Work(0.0, 0.0, 0.0, Coupling.GOOD),
+            'quiet standing for the marker calibration', simulated=True,
         )  # fmt: skip
         recording = Recording(folder, self.markers.names, self.static_time, self.static, plates={})
         with BagWriter(folder / _ALL) as writer:
@@ -132,7 +133,7 @@ class Session:
         recording = Recording(folder, self.markers.names, frames, seen, plates)
         with BagWriter(folder / task.name) as writer:
             streams = [
-                self._latched(writer, _task_entry(task, truth.box[0, :3]), self.calibration()),
+                self._latched(writer, _recorded_task(task, truth.box[0, :3]), self.calibration()),
                 marker_stream(writer, START_TIME_NS, recording),
                 pose_stream(writer, START_TIME_NS, frames, position, quaternion),
                 *(plate_stream(writer, START_TIME_NS, side, plates[side]) for side in plates),
@@ -159,7 +160,7 @@ class Session:
         }
 
     def _latched(
-        self, writer: BagWriter, task: TaskEntry, calibration: MarkerCalibration | None
+        self, writer: BagWriter, task: RecordedTask, calibration: MarkerCalibration | None
     ) -> Iterator[tuple[int, str, Any]]:
         writer.topic('subject', 'lifting_interfaces/msg/Subject', transient_local=True)
         writer.topic('task', 'lifting_interfaces/msg/Task', transient_local=True)
@@ -178,19 +179,15 @@ def _stamps(when: Phases, rate: float) -> Array:
     return np.asarray(np.arange(round(when.end * rate) + 1) / rate)
 
 
-def _task_entry(task: Task, start: Array) -> TaskEntry:
-    return TaskEntry(
-        task_id=task.name,
-        description=f'{task.description} (simulated)',
-        box_mass=task.box_mass,
-        box_size=task.box_size,
-        # Cut-outs in the box are optimal handles; the big box is held from below (NIOSH 94-110).
-        coupling=1 if task.grip_height == 0.0 else 3,
-        lifts_per_minute=0.2,
-        lifts_per_day=100.0,
-        duration_hours=1.0,
-        box_start=(float(start[0]), float(start[1]), float(start[2])),
-        box_end=task.end,
+def _recorded_task(task: Task, start: Array) -> RecordedTask:
+    # Cut-outs in the box are optimal handles; the big box is held from below (NIOSH 94-110).
+    coupling = Coupling.GOOD if task.grip_height == 0.0 else Coupling.POOR
+    place = (float(start[0]), float(start[1]), float(start[2]))
+    return RecordedTask(
+        task.name,
+        Box(task.box_mass, task.box_size, place, task.end),
+        Work(lifts_per_day=100.0, lifts_per_minute=0.2, duration_hours=1.0, coupling=coupling),
+        f'{task.description} (simulated)',
         simulated=True,
     )
 

@@ -31,6 +31,23 @@ class StrengthError(HumanModelError):
     """A joint strength is asked for that the tables do not hold."""
 
 
+class BoxError(HumanModelError):
+    """A field of a box is out of its range.
+
+    Parameters
+    ----------
+    field : str
+    value : object
+    problem : str
+        Requirement on the value.
+    """
+
+    def __init__(self, field: str, value: object, problem: str) -> None:
+        super().__init__(f'box.{field} = {value}: {problem}')
+        self.field = field
+        self.value = value
+
+
 class TableError(HumanModelError):
     """A table cannot be read, or a cell of it has a wrong value.
 

@@ -19,10 +19,8 @@ if TYPE_CHECKING:
     from lift_predictor.core.problem.comparison import LiftComparison
     from lift_predictor.core.problem.maximum_weight import MaximumWeight, Weighting
     from lift_predictor.core.problem.prediction import NearestLift, Prediction
-    from lift_predictor.core.problem.task import Box
 
 _MODULES = {
-    'Box': 'problem.task',
     'LiftComparison': 'problem.comparison',
     'LiftPlanner': 'planning.planner',
     'LiftPredictor': 'predictor',
@@ -37,7 +35,6 @@ _MODULES = {
 }
 
 __all__ = [
-    'Box',
     'LiftComparison',
     'LiftPlanner',
     'LiftPredictor',

@@ -10,9 +10,9 @@ import numpy as np
 
 from human_model.motion import Lift
 from human_model.subject import Subject
+from human_model.task import Box
 from lift_predictor.core.problem.comparison import LiftComparison
 from lift_predictor.core.problem.prediction import Prediction
-from lift_predictor.core.problem.task import Box
 from lifting_messages.conversions import (
     LABORATORY,
     MotionQuality,
@@ -39,15 +39,15 @@ def box_from_msg(task: Message, mass: float) -> Box:
 
     Raises
     ------
-    TaskError
-        If mass or size is negative or not finite.
+    BoxError
+        If mass or size is negative, or a value is not finite.
     """
-    places = []
-    for point in (task.box_start, task.box_end):
-        place = np.array([point.x, point.y, point.z])
-        places.append(None if np.all(np.isnan(place)) else place)
-    depth = float(task.box_size[0]) if mass > 0.0 else 0.0
-    return Box(mass=mass, depth=depth, start=places[0], end=places[1])
+    start, end = (
+        None if all(map(math.isnan, place)) else place
+        for place in ((point.x, point.y, point.z) for point in (task.box_start, task.box_end))
+    )
+    depth, width, height = task.box_size if mass > 0.0 else (0.0, 0.0, 0.0)
+    return Box(mass, (depth, width, height), start, end)
 
 
 def prediction_to_msg(prediction: Prediction, lift: Lift | None, subject: Subject) -> Message:

@@ -14,6 +14,7 @@ import pytest
 from human_model.motion import Lift
 from human_model.report import SolveReport
 from human_model.subject import Subject
+from human_model.task import Box
 from lift_predictor.core.bspline import RestToRestSpline
 from lift_predictor.core.models.sagittal.assembly import sagittal_library
 from lift_predictor.core.models.sagittal.evaluation import evaluate
@@ -27,9 +28,8 @@ from lift_predictor.core.models.spatial.task import PlacedBox, SpatialTask, plac
 from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.problem.comparison import LiftComparison
 from lift_predictor.core.problem.prediction import Prediction
-from lift_predictor.core.problem.task import Box
 
-BOX_DEPTH, BOX_HEIGHT = 0.238, 0.127
+BOX_SIZE = BOX_DEPTH, _, BOX_HEIGHT = (0.238, 0.305, 0.127)
 BOX_GAP, SHELF_GAP, SHELF_HEIGHT = 0.033, 0.305, 0.9
 DURATION = 1.2
 
@@ -169,7 +169,7 @@ def outcome(
 
     @cache
     def solve(mass: float) -> Outcome:
-        lift, box = make_lift(mass), Box(mass=mass, depth=BOX_DEPTH if mass > 0.0 else 0.0)
+        lift, box = make_lift(mass), Box(mass, BOX_SIZE if mass > 0.0 else (0.0, 0.0, 0.0))
         predicted = predictor.predict(subject, lift, box)
         return Outcome(lift, box, predicted, predicted.comparison)
 

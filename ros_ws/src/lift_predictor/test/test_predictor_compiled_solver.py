@@ -11,6 +11,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
+from human_model.task import Box
 from lift_predictor.core.models.sagittal.assembly import (
     sagittal_assembler,
     sagittal_library,
@@ -20,7 +21,6 @@ from lift_predictor.core.models.sagittal.grid import SagittalGrid
 from lift_predictor.core.models.sagittal.person import Person
 from lift_predictor.core.models.sagittal.starts import make_starts
 from lift_predictor.core.models.sagittal.task import build_task
-from lift_predictor.core.problem.task import Box
 from lift_predictor.core.solvers import cache, interior_point
 from lift_predictor.core.solvers.layout import Channel, Group
 from lift_predictor.core.solvers.library import load_library
@@ -40,7 +40,7 @@ def lift(make_lift, person: Person) -> Callable[[float], tuple[SplineNlp, list[n
     assembler = sagittal_assembler(sagittal_library(), GRID)
 
     def make(mass: float) -> tuple[SplineNlp, list[np.ndarray]]:
-        task = build_task(person, make_lift(mass), Box(mass, 0.238))
+        task = build_task(person, make_lift(mass), Box(mass, (0.238, 0.305, 0.127)))
         programme = sagittal_nlp(assembler, GRID, task.parameters.pack(), task.bounds)
         starts = [
             np.append(start.control.ravel(), mass) for start in make_starts(task, GRID.spline)

@@ -12,10 +12,10 @@ pytest.importorskip('lifting_interfaces.msg', reason='the interface package is n
 from geometry_msgs.msg import Point
 from lifting_interfaces.msg import SolveReport, Task
 
+from human_model.exceptions import BoxError
+from human_model.task import Box
 from lift_predictor import conversions
-from lift_predictor.core.exceptions import TaskError
 from lift_predictor.core.models.sagittal.verify import TOLERANCE
-from lift_predictor.core.problem.task import Box
 
 UNKNOWN = Point(x=np.nan, y=np.nan, z=np.nan)
 
@@ -33,7 +33,7 @@ def test_box_of_a_task() -> None:
 
 
 def test_half_known_place_of_the_box_is_refused() -> None:
-    with pytest.raises(TaskError, match=r'box\.end'):
+    with pytest.raises(BoxError, match=r'box\.end'):
         conversions.box_from_msg(task(box_end=Point(x=0.5, y=np.nan, z=0.9)), 7.0)
 
 
@@ -60,7 +60,7 @@ def test_prediction_can_be_read_alone(outcome, subject) -> None:
 
 def test_failed_prediction_carries_no_data(predictor, make_lift, subject) -> None:
     lift = make_lift(7.0)
-    box = Box(7.0, 0.238, end=np.array([1.6, 0.0, 1.0]))
+    box = Box(7.0, (0.238, 0.305, 0.127), end=np.array([1.6, 0.0, 1.0]))
     failed = predictor.predict(subject, lift, box)
     message = conversions.prediction_to_msg(failed, lift, subject)
     assert message.report.status == SolveReport.PREDICTOR_UNREACHABLE

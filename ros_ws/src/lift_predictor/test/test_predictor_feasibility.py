@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from human_model.report import SolveReport, SolveStatus
+from human_model.task import Box
 from lift_predictor.core.models.sagittal.way import StraightWay
 from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.problem.nearest_lift import (
@@ -21,14 +22,13 @@ from lift_predictor.core.problem.nearest_lift import (
     with_nearest,
 )
 from lift_predictor.core.problem.prediction import Prediction
-from lift_predictor.core.problem.task import Box
 
-DEPTH = 0.238
+SIZE = (0.238, 0.305, 0.127)
 
 
 @pytest.fixture(scope='module')
 def too_heavy(subject, predictor, make_lift):
-    return predictor.predict(subject, make_lift(7.0), Box(40.0, DEPTH))
+    return predictor.predict(subject, make_lift(7.0), Box(40.0, SIZE))
 
 
 def test_too_heavy_a_box_names_a_torque_and_the_mass_that_can_be_lifted(too_heavy) -> None:
@@ -51,10 +51,10 @@ def test_the_nearest_mass_can_be_lifted_and_a_little_more_cannot(
 ) -> None:
     # Before the margin between the nodes.
     mass = max(run.box_mass for run in too_heavy.nearest.prediction.runs)
-    lighter = predictor.predict(subject, make_lift(7.0), Box(0.97 * mass, DEPTH))
+    lighter = predictor.predict(subject, make_lift(7.0), Box(0.97 * mass, SIZE))
     assert lighter.report.ok, lighter.report.message
     assert lighter.nearest is None
-    heavier = predictor.predict(subject, make_lift(7.0), Box(1.03 * mass, DEPTH))
+    heavier = predictor.predict(subject, make_lift(7.0), Box(1.03 * mass, SIZE))
     assert heavier.report.status is SolveStatus.PREDICTOR_INFEASIBLE
     assert heavier.nearest.prediction.box_mass == pytest.approx(mass, rel=0.02)
 
@@ -68,7 +68,7 @@ def test_places_out_of_reach_give_the_nearest_that_can_be_reached(
 ) -> None:
     lift = make_lift(7.0)
     recorded = lift.motion.box_position[-1]
-    result = predictor.predict(subject, lift, Box(7.0, DEPTH, end=recorded + shift))
+    result = predictor.predict(subject, lift, Box(7.0, SIZE, end=recorded + shift))
     assert result.report.status is SolveStatus.PREDICTOR_UNREACHABLE
     assert result.lift is None
     assert words in result.report.message
@@ -87,7 +87,7 @@ def test_places_out_of_reach_give_the_nearest_that_can_be_reached(
 
 def test_too_weak_for_the_posture_alone_has_no_nearest_lift(subject, make_lift) -> None:
     weak = LiftPredictor()
-    result = weak.predict(replace(subject, strength_z=-2.0), make_lift(7.0), Box(7.0, DEPTH))
+    result = weak.predict(replace(subject, strength_z=-2.0), make_lift(7.0), Box(7.0, SIZE))
     assert result.report.status is SolveStatus.PREDICTOR_INFEASIBLE
     assert result.nearest is None
     assert 'largest violation' in result.report.message

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from human_model.report import SolveStatus
+from human_model.task import Box
 from lift_predictor.core.exceptions import TaskError
 from lift_predictor.core.models.sagittal.lift_model import POSTURE_TOLERANCES
 from lift_predictor.core.models.sagittal.task import build_task
@@ -23,10 +24,9 @@ from lift_predictor.core.problem.maximum_weight import (
     maximum_weight,
 )
 from lift_predictor.core.problem.run import Start, best_first
-from lift_predictor.core.problem.task import Box
 
-DEPTH = 0.238
-BOX = Box(7.0, DEPTH)
+SIZE = (0.238, 0.305, 0.127)
+BOX = Box(7.0, SIZE)
 
 
 @pytest.fixture(scope='module')
@@ -160,7 +160,7 @@ def test_stronger_people_lift_more(subject, predictor, make_lift) -> None:
 
 
 def test_refusals_carry_no_numbers(subject, predictor, make_lift) -> None:
-    far = Box(7.0, DEPTH, end=np.array([1.6, 0.0, 1.0]))
+    far = Box(7.0, SIZE, end=np.array([1.6, 0.0, 1.0]))
     result = predictor.maximum_weight(subject, make_lift(7.0), far)
     assert result.report.status is SolveStatus.PREDICTOR_UNREACHABLE
     assert np.isnan([result.mass, result.weight, result.effort, *result.criteria]).all()

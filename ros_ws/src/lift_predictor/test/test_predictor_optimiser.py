@@ -10,13 +10,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from human_model.task import Box
 from lift_predictor.core.models.sagittal.grid import SagittalGrid
 from lift_predictor.core.models.sagittal.lift_model import COLD, SagittalModel
 from lift_predictor.core.models.sagittal.person import Person
 from lift_predictor.core.models.sagittal.starts import make_starts
 from lift_predictor.core.models.sagittal.task import SagittalTask, build_task
 from lift_predictor.core.problem.run import Start
-from lift_predictor.core.problem.task import Box
 from lift_predictor.core.problem.task_solver import TaskSolver
 from lift_predictor.core.solvers.solution import InteriorPointOptions, Status
 
@@ -30,7 +30,7 @@ def solver() -> TaskSolver[SagittalTask]:
 
 @pytest.fixture(scope='module')
 def task(make_lift, person: Person) -> Callable[[float], SagittalTask]:
-    return lambda mass: build_task(person, make_lift(mass), Box(mass, 0.238))
+    return lambda mass: build_task(person, make_lift(mass), Box(mass, (0.238, 0.305, 0.127)))
 
 
 @pytest.mark.parametrize('mass', [7.0, 12.0])

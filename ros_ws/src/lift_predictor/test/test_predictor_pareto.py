@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from human_model.report import SolveReport, SolveStatus
+from human_model.task import Box
 from lift_predictor.core.exceptions import TaskError
 from lift_predictor.core.pareto import (
     N_CASES,
@@ -22,9 +23,8 @@ from lift_predictor.core.pareto import (
     weightings,
 )
 from lift_predictor.core.problem.maximum_weight import Weighting, maximum_weight
-from lift_predictor.core.problem.task import Box
 
-BOX = Box(7.0, 0.238)
+BOX = Box(7.0, (0.238, 0.305, 0.127))
 
 
 @pytest.fixture(scope='module')

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from human_model.subject import Subject
+from human_model.task import Box
 from lift_predictor.core.exceptions import PercentileError
 from lift_predictor.core.models.sagittal.person import Person
 from lift_predictor.core.percentile import (
@@ -19,9 +20,8 @@ from lift_predictor.core.percentile import (
     percentile_by_root,
 )
 from lift_predictor.core.predictor import LiftPredictor
-from lift_predictor.core.problem.task import Box
 
-DEPTH = 0.238
+SIZE = (0.238, 0.305, 0.127)
 Z = 0.6
 
 
@@ -30,9 +30,9 @@ def known(subject: Subject, make_lift):
     """Return a lift and the largest box that a man of strength_z = 0.6 lifts so."""
     strong = LiftPredictor()
     lift = make_lift(7.0)
-    result = strong.maximum_weight(replace(subject, strength_z=Z), lift, Box(7.0, DEPTH))
+    result = strong.maximum_weight(replace(subject, strength_z=Z), lift, Box(7.0, SIZE))
     assert result.report.ok
-    return lift, Box(result.mass, DEPTH)
+    return lift, Box(result.mass, SIZE)
 
 
 @pytest.fixture(scope='module')
@@ -75,7 +75,7 @@ def test_the_starting_strength_does_not_matter(subject, known, by_root) -> None:
 
 def test_impossible_weights_are_refused(subject, predictor, make_lift) -> None:
     with pytest.raises(PercentileError, match=r'60 kg .* no plausible strength'):
-        percentile_by_root(predictor, subject, make_lift(7.0), Box(60.0, DEPTH))
+        percentile_by_root(predictor, subject, make_lift(7.0), Box(60.0, SIZE))
 
 
 def test_plausible_range_leaves_every_joint_its_strength(predictor, known, subject) -> None:

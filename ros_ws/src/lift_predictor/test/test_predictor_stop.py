@@ -10,6 +10,7 @@ import time
 import numpy as np
 import pytest
 
+from human_model.task import Box
 from lift_predictor.core.exceptions import CancelledError
 from lift_predictor.core.models.sagittal.grid import SagittalGrid
 from lift_predictor.core.models.sagittal.lift_model import COLD, SagittalModel
@@ -19,7 +20,6 @@ from lift_predictor.core.options import PredictorOptions
 from lift_predictor.core.planning.plan_task import PlanTask
 from lift_predictor.core.planning.planner import LiftPlanner
 from lift_predictor.core.predictor import LiftPredictor
-from lift_predictor.core.problem.task import Box
 from lift_predictor.core.problem.task_solver import TaskSolver
 from lift_predictor.core.solvers import interior_point
 from lift_predictor.core.solvers.solution import InteriorPointOptions, Status
@@ -32,7 +32,7 @@ PROMPT = 0.5
 
 @pytest.fixture(scope='module')
 def task(person, make_lift):
-    return build_task(person, make_lift(7.0), Box(7.0, 0.238))
+    return build_task(person, make_lift(7.0), Box(7.0, (0.238, 0.305, 0.127)))
 
 
 def test_flag_tells_why_and_can_be_used_again() -> None:

@@ -9,15 +9,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from human_model.exceptions import BoxError
 from human_model.motion import Lift
+from human_model.task import Box
 from lift_predictor.core.exceptions import TaskError, UnreachableError
 from lift_predictor.core.models.sagittal.kinematics import chain_positions, reach
 from lift_predictor.core.models.sagittal.parameters import JOINTS
 from lift_predictor.core.models.sagittal.task import PLACE_ALLOWANCE, build_task
 from lift_predictor.core.options import POSTURE_TOLERANCE
-from lift_predictor.core.problem.task import Box
 
-BOX = Box(mass=7.0, depth=0.238)
+BOX = Box(7.0, (0.238, 0.305, 0.127))
 
 
 def with_points(lift: Lift, change) -> Lift:
@@ -145,12 +146,12 @@ def test_posture_beyond_the_joint_limits_is_named(make_lift, person) -> None:
     [
         ({'mass': -1.0}, r'box\.mass = -1'),
         ({'mass': np.nan}, r'box\.mass = nan'),
-        ({'mass': 7.0, 'depth': np.inf}, r'box\.depth = inf'),
+        ({'mass': 7.0, 'size': (np.inf, 0.3, 0.1)}, r'box\.size = \(inf'),
         ({'mass': 7.0, 'end': np.array([1.0, 0.0, np.nan])}, r'box\.end = '),
     ],
 )
 def test_bad_box_is_named(fields: dict, words: str) -> None:
-    with pytest.raises(TaskError, match=words):
+    with pytest.raises(BoxError, match=words):
         Box(**fields)
 
 
@@ -169,11 +170,11 @@ def test_reach_finds_the_nearest_posture(parameters, person) -> None:
 
 def test_the_box_is_not_carried_below_the_lower_of_its_places(person, make_lift) -> None:
     lift = make_lift(7.0)
-    task = build_task(person, lift, Box(7.0, 0.238))
+    task = build_task(person, lift, Box(7.0, (0.238, 0.305, 0.127)))
     lower = lift.motion.box_position[[0, -1], 2].min()
     assert task.parameters.lowest_grip == pytest.approx(lower - PLACE_ALLOWANCE, abs=1e-6)
     place = np.array([*lift.motion.box_position[0, :2], lower + 0.05])
-    higher = build_task(person, lift, Box(7.0, 0.238, start=place))
+    higher = build_task(person, lift, Box(7.0, (0.238, 0.305, 0.127), start=place))
     assert higher.parameters.lowest_grip == pytest.approx(lower + 0.05 - PLACE_ALLOWANCE, abs=1e-6)
 
 

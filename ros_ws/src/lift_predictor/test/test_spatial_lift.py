@@ -15,15 +15,15 @@ from human_model.motion import BodyMotion, Lift
 from human_model.report import SolveReport, SolveStatus
 from human_model.skeleton import ExternalForce
 from human_model.subject import Subject
+from human_model.task import Box
 from lift_predictor.core.models.spatial.task import KEY_JOINTS, SpatialTask, without_ground_windows
 from lift_predictor.core.models.spatial.verify import TOLERANCE
 from lift_predictor.core.options import PredictorOptions, Windows
 from lift_predictor.core.predictor import LiftPredictor
-from lift_predictor.core.problem.task import Box
 from lift_predictor.core.problem.task_solver import TaskSolver
 
 BAGS = Path(__file__).parents[4] / 'bags'
-MASS, DEPTH = 7.0, 0.238
+MASS, SIZE = 7.0, (0.238, 0.305, 0.127)
 SIDES = ('r', 'l')
 
 
@@ -64,7 +64,7 @@ def spatial(predictor: LiftPredictor) -> TaskSolver[SpatialTask]:
 
 @pytest.fixture(scope='module')
 def solved(predictor: LiftPredictor, subject: Subject, lift: Lift):
-    return predictor.predict(subject, lift, Box(MASS, DEPTH))
+    return predictor.predict(subject, lift, Box(MASS, SIZE))
 
 
 def test_solved_with_small_kkt_residuals_and_verified_between_the_nodes(solved) -> None:
@@ -189,7 +189,7 @@ def test_lift_to_the_right_is_the_mirror_image(
     """Same objective and reflected motion; strength must be symmetric for that."""
     both = []
     for recorded in (lift, mirrored(lift)):
-        task = spatial.model.recorded_task(subject, recorded, Box(MASS, DEPTH))
+        task = spatial.model.recorded_task(subject, recorded, Box(MASS, SIZE))
         p = task.parameters
         # Published trunk rotation is 71.6 N m to the right, 71 N m to the left.
         rotation = [2, 5]
@@ -220,7 +220,7 @@ def test_turned_laboratory_gives_the_same_lift(
         ground_force=motion.ground_force @ turn.T,
         frames=quaternion_from_matrix(turn @ matrix_from_quaternion(motion.frames)),
     )
-    other = predictor.predict(subject, replace(lift, motion=moved), Box(MASS, DEPTH))
+    other = predictor.predict(subject, replace(lift, motion=moved), Box(MASS, SIZE))
     assert other.report.ok
     assert other.report.objective == pytest.approx(solved.report.objective, rel=1e-5)
     there = solved.lift.motion.points @ turn.T + shift
@@ -229,12 +229,12 @@ def test_turned_laboratory_gives_the_same_lift(
 
 def test_the_pipeline_takes_asymmetric_lifts_to_space(subject: Subject, lift: Lift) -> None:
     predictor = LiftPredictor()
-    predicted = predictor.predict(subject, lift, Box(MASS, DEPTH))
+    predicted = predictor.predict(subject, lift, Box(MASS, SIZE))
     assert predicted.report.ok, predicted.report.message
     assert predicted.lift.motion.skeleton == '3d_40dof'
     assert predicted.comparison.joint_names == KEY_JOINTS
     flat = LiftPredictor(PredictorOptions(dimension='2d'))
-    refused = flat.predict(subject, lift, Box(MASS, DEPTH))
+    refused = flat.predict(subject, lift, Box(MASS, SIZE))
     assert refused.report.status is SolveStatus.PREDICTOR_BAD_INPUT
     assert 'turns' in refused.report.message
 
@@ -242,7 +242,7 @@ def test_the_pipeline_takes_asymmetric_lifts_to_space(subject: Subject, lift: Li
 def test_free_duration_does_not_cost_more(subject: Subject, lift: Lift, solved) -> None:
     options = PredictorOptions(windows=Windows(duration=(0.8, 1.25)))
     free = LiftPredictor(options).spatial
-    task = free.model.recorded_task(subject, lift, Box(MASS, DEPTH))
+    task = free.model.recorded_task(subject, lift, Box(MASS, SIZE))
     predicted = free.solve(task, free.model.starts(task)[:1])
     assert predicted.report.ok, predicted.report.message
     recorded = lift.end - lift.start
@@ -256,7 +256,7 @@ def test_too_heavy_a_box_names_what_breaks(
     predictor: LiftPredictor, spatial: TaskSolver[SpatialTask], subject: Subject, lift: Lift
 ) -> None:
     """The heaviest feasible lift comes with it; with a little more weight it is not feasible."""
-    predicted = predictor.predict(subject, lift, Box(60.0, DEPTH))
+    predicted = predictor.predict(subject, lift, Box(60.0, SIZE))
     assert predicted.report.status is SolveStatus.PREDICTOR_INFEASIBLE
     assert 'no feasible motion: joint torque limit' in predicted.report.message
     assert 'breaks first' in predicted.report.message
@@ -266,7 +266,7 @@ def test_too_heavy_a_box_names_what_breaks(
     assert nearest.report.ok
     assert MASS < nearest.box_mass < 60.0
     heavier = without_ground_windows(
-        spatial.model.recorded_task(subject, lift, Box(nearest.box_mass + 2.0, DEPTH))
+        spatial.model.recorded_task(subject, lift, Box(nearest.box_mass + 2.0, SIZE))
     )
     start = replace(spatial.model.starts(heavier)[0], control=nearest.runs[0].control)
     assert not spatial.solve(heavier, (start,)).report.ok
@@ -278,9 +278,9 @@ def test_bad_input_is_named(predictor: LiftPredictor, subject: Subject, lift: Li
     foot = [motion.point_names.index(f'{part}_r') for part in ('heel', 'toe', 'ankle')]
     walking[:, foot, 0] += np.linspace(0.0, 2.0, len(motion))[:, None]
     step = replace(lift, motion=replace(motion, points=walking))
-    report = predictor.predict(subject, step, Box(MASS, DEPTH)).report
+    report = predictor.predict(subject, step, Box(MASS, SIZE)).report
     assert report.status is SolveStatus.PREDICTOR_BAD_INPUT
     assert 'right foot moves' in report.message
     bad = SolveReport(SolveStatus.TRACKER_MARKERS_MISSING, 'marker T10 is missing')
-    report = predictor.predict(subject, replace(lift, report=bad), Box(MASS, DEPTH)).report
+    report = predictor.predict(subject, replace(lift, report=bad), Box(MASS, SIZE)).report
     assert 'marker T10' in report.message

@@ -23,10 +23,9 @@ if TYPE_CHECKING:
     from human_model.motion import BodyMotion
     from human_model.skeletons import Skeleton3D
     from human_model.subject import Subject
-    from human_model.task import Coupling, Work
+    from human_model.task import Box, Coupling, Work
     from injury_monitor.core.lifting_equation import LiftingTask, lifting_equation
     from lift_predictor.core.planning.plan_task import PlanTask
-    from lift_predictor.core.problem.task import Box
     from lifting.assessment import assess
     from lifting.exceptions import IncompleteLiftError, IncompleteRecordingError, NoSolutionError
     from lifting.importing import import_recording
@@ -71,7 +70,7 @@ __all__ = [
 # Modules are imported when a name is first used: `import lifting` itself takes no time.
 _MODULES = {
     'BodyMotion': 'human_model.motion',
-    'Box': 'lift_predictor.core.problem.task',
+    'Box': 'human_model.task',
     'ConventionOptions': 'lifting_recordings.alignment',
     'Coupling': 'human_model.task',
     'ImportOptions': 'lifting_recordings.importer',

@@ -12,8 +12,7 @@ from human_model.subject import Subject
 from human_model.typing import IntArray
 
 if TYPE_CHECKING:
-    from human_model.task import Work
-    from lift_predictor.core.problem.task import Box
+    from human_model.task import Box, Work
 
 
 @dataclass(frozen=True, eq=False)

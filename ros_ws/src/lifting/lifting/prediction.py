@@ -9,12 +9,12 @@ from dataclasses import dataclass, replace
 import lift_predictor
 from human_model.report import SolveReport
 from human_model.subject import Subject
+from human_model.task import Box
 from lift_predictor.core.options import PredictorOptions
 from lift_predictor.core.planning.plan_task import PlanTask
 from lift_predictor.core.planning.planned_lift import PlannedLift
 from lift_predictor.core.planning.planner import LiftPlanner
 from lift_predictor.core.predictor import LiftPredictor
-from lift_predictor.core.problem.task import Box
 from lifting.exceptions import IncompleteLiftError, NoSolutionError
 from lifting.lift import Lift
 

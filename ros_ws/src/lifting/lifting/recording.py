@@ -11,11 +11,10 @@ from pathlib import Path
 import numpy as np
 
 from human_model.subject import Subject
-from human_model.task import Work
+from human_model.task import Box, Work
 from human_model.typing import Array
 from injury_monitor.conversions import assignment_from_msg
 from lift_predictor.conversions import box_from_msg
-from lift_predictor.core.problem.task import Box
 from lifting.exceptions import IncompleteRecordingError
 from lifting_messages import Message
 from lifting_messages.conversions import subject_from_msg

@@ -31,7 +31,7 @@ from lifting_recordings.opensim_forces import read_trc_and_forces
 from lifting_recordings.plate_assignment import Carried
 from lifting_recordings.raw_markers import without_zeros
 from lifting_recordings.recording import Analog, Plate, RawRecording, Recording
-from lifting_recordings.subject_file import SubjectFile, TaskEntry, read_subject_file
+from lifting_recordings.subject_file import SubjectFile, read_subject_file
 
 _EMG_BLOCK_SECONDS = 0.01
 
@@ -174,7 +174,7 @@ def read_recording(options: ImportOptions) -> ReadRecording:
     if options.output.exists():
         raise BagError(f'{options.output} exists already; it is not overwritten')
     person = entry.subject
-    carried = Carried(person.mass, entry.task.box_mass, tuple(entry.recording.box_markers))
+    carried = Carried(person.mass, entry.task.box.mass, tuple(entry.recording.box_markers))
 
     def aligned(raw: RawRecording, conventions: ConventionOptions) -> Recording:
         return align(
@@ -243,14 +243,13 @@ def _latched(
 ) -> Stream:
     writer.topic('subject', 'lifting_interfaces/msg/Subject', transient_local=True)
     writer.topic('task', 'lifting_interfaces/msg/Task', transient_local=True)
-    task: TaskEntry = entry.task
     subject = subject_message(
         writer, stamp_ns, entry.subject, entry.source, entry.recording.marker_set, calibration
     )
     return iter(
         (
             (stamp_ns, 'subject', subject),
-            (stamp_ns, 'task', task_message(writer, stamp_ns, task, source)),
+            (stamp_ns, 'task', task_message(writer, stamp_ns, entry.task, source)),
         )
     )
 

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from human_model.subject import Subject
+from human_model.task import Task
 from human_model.typing import Array
 from lifting_recordings.bag_writer import BagWriter
-from lifting_recordings.subject_file import TaskEntry
 
 _SEX = {'male': 1, 'female': 2}
 
@@ -96,22 +96,24 @@ def subject_message(
     )
 
 
-def task_message(writer: BagWriter, stamp_ns: int, entry: TaskEntry, source: str) -> Any:
+def task_message(writer: BagWriter, stamp_ns: int, task: Task, source: str) -> Any:
     """Return a lifting_interfaces/Task; `source` says where from and what was detected."""
+    box, work = task.box, task.work
+    start, end = (np.array(place or [np.nan] * 3) for place in (box.start, box.end))
     return writer.make(
         'lifting_interfaces/msg/Task',
         header=writer.header(stamp_ns),
-        task_id=entry.task_id,
-        description=entry.description,
-        box_mass=entry.box_mass,
-        box_size=np.array(entry.box_size, dtype=np.float64),
-        box_start=writer.point(np.array(entry.box_start)),
-        box_end=writer.point(np.array(entry.box_end)),
-        coupling=entry.coupling,
-        lifts_per_minute=entry.lifts_per_minute,
-        lifts_per_day=entry.lifts_per_day,
-        duration_hours=entry.duration_hours,
-        control_at_destination=entry.control_at_destination,
-        simulated=entry.simulated,
+        task_id=task.task_id,
+        description=task.description,
+        box_mass=box.mass,
+        box_size=np.array(box.size, dtype=np.float64),
+        box_start=writer.point(start),
+        box_end=writer.point(end),
+        coupling=int(work.coupling),
+        lifts_per_minute=work.lifts_per_minute,
+        lifts_per_day=work.lifts_per_day,
+        duration_hours=work.duration_hours,
+        control_at_destination=work.control_at_destination,
+        simulated=task.simulated,
         source=source,
     )

@@ -37,39 +37,17 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from human_model.fields import Fields
 from human_model.subject import Subject, read_subject
-from human_model.task import COUPLINGS
+from human_model.task import Box, Task, read_work
 from lifting_recordings.exceptions import SubjectFileError
-
-_NAN3 = (math.nan, math.nan, math.nan)
-
 
 #: Where the plates are: as the file says, or as quiet standing says (see `plate_registration`).
 AS_RECORDED, QUIET_STANDING = 'as_recorded', 'quiet_standing'
-
-
-@dataclass(frozen=True)
-class TaskEntry:
-    """Fields of lifting_interfaces/Task that a person enters; units as in the message."""
-
-    task_id: str
-    description: str
-    box_mass: float
-    box_size: tuple[float, float, float]
-    coupling: int
-    lifts_per_minute: float
-    lifts_per_day: float
-    duration_hours: float
-    control_at_destination: bool = False
-    box_start: tuple[float, float, float] = _NAN3
-    box_end: tuple[float, float, float] = _NAN3
-    simulated: bool = False
 
 
 @dataclass(frozen=True)
@@ -91,7 +69,7 @@ class SubjectFile:
     path: Path
     subject: Subject
     source: str
-    task: TaskEntry
+    task: Task
     recording: RecordingEntry
 
 
@@ -139,27 +117,23 @@ def _subject(section: _Section) -> tuple[Subject, str]:
     return read_subject(section), source
 
 
-def _task(section: _Section) -> TaskEntry:
-    box_mass = section.at_least_zero('box_mass')
-    size = section.triple('box_size', *(() if box_mass > 0.0 else ((0.0, 0.0, 0.0),)))
-    if box_mass > 0.0 and min(size) <= 0.0:
-        raise section.error('box_size', f'{size} is not positive, but box_mass is {box_mass:g} kg')
-    entry = TaskEntry(
-        task_id=section.text('task_id'),
-        description=section.text('description', ''),
-        box_mass=box_mass,
-        box_size=size,
-        coupling=section.choice('coupling', COUPLINGS),
-        lifts_per_minute=section.at_least_zero('lifts_per_minute'),
-        lifts_per_day=section.at_least_zero('lifts_per_day'),
-        duration_hours=section.at_least_zero('duration_hours'),
-        control_at_destination=section.flag('control_at_destination', False),
-        box_start=section.triple('box_start', _NAN3),
-        box_end=section.triple('box_end', _NAN3),
-        simulated=section.flag('simulated', False),
+def _task(section: _Section) -> Task:
+    mass = section.at_least_zero('box_mass')
+    size = section.triple('box_size', *(() if mass > 0.0 else ((0.0, 0.0, 0.0),)))
+    if mass > 0.0 and min(size) <= 0.0:
+        raise section.error('box_size', f'{size} is not positive, but box_mass is {mass:g} kg')
+    start, end = (
+        section.triple(key) if key in section else None for key in ('box_start', 'box_end')
+    )
+    task = Task(
+        section.text('task_id'),
+        Box(mass, size, start, end),
+        read_work(section),
+        section.text('description', ''),
+        section.flag('simulated', False),
     )
     section.finish()
-    return entry
+    return task
 
 
 def _recording(section: _Section) -> RecordingEntry:

@@ -47,7 +47,7 @@ def test_whole_file(tmp_path):
     entry = read_subject_file(written(tmp_path))
     assert entry.subject.sex == 'male'
     assert entry.subject.lengths == {'thigh': 0.41}
-    assert entry.task.box_size == (0.238, 0.305, 0.127)
+    assert entry.task.box.size == (0.238, 0.305, 0.127)
     assert entry.recording.marker_set == 'plug_in_gait_58'
     assert entry.task.simulated is False
 

@@ -21,6 +21,7 @@ from human_model.exceptions import HumanModelError
 from human_model.motion import Lift
 from human_model.report import SolveStatus
 from human_model.subject import RANGES, Subject
+from human_model.task import Box
 from lift_predictor.core.exceptions import PercentileError
 from lift_predictor.core.models.sagittal.person import Person
 from lift_predictor.core.models.sagittal.task import SagittalTask
@@ -31,7 +32,6 @@ from lift_predictor.core.problem.maximum_weight import (
     maximum_weight,
 )
 from lift_predictor.core.problem.run import Start
-from lift_predictor.core.problem.task import Box
 
 Z_STEP: Final = 0.05
 """Step of the enumeration: the dissertation gives its z-score (1.05) to this step."""

@@ -11,6 +11,7 @@ from human_model.exceptions import HumanModelError
 from human_model.motion import Lift
 from human_model.report import SolveReport, SolveStatus
 from human_model.subject import Subject
+from human_model.task import Box
 from lift_predictor.core.exceptions import TaskError, UnreachableError
 from lift_predictor.core.models.sagittal.lift_model import SagittalModel
 from lift_predictor.core.options import SAGITTAL, PredictorOptions, choose_model
@@ -23,7 +24,6 @@ from lift_predictor.core.problem.nearest_lift import (
 )
 from lift_predictor.core.problem.prediction import Prediction
 from lift_predictor.core.problem.run import Progress
-from lift_predictor.core.problem.task import Box
 from lift_predictor.core.problem.task_solver import TaskSolver
 from lift_predictor.core.solvers.stop import StopFlag
 

@@ -9,6 +9,7 @@ from typing import Final
 
 import numpy as np
 
+from human_model.task import Point
 from lift_predictor.core.exceptions import PlanError
 from lift_predictor.core.planning.technique import FREE, technique
 
@@ -35,8 +36,6 @@ distance before the ankles [m]."""
 
 MOVED_ENDS: Final = (('end',), ('start',), ('start', 'end'))
 """Places that are moved to find the nearest feasible lift, in the order of the trials."""
-
-Point = tuple[float, float, float]
 
 
 @dataclass(frozen=True)

@@ -38,10 +38,10 @@ from pathlib import Path
 from typing import Final
 
 from human_model.subject import Subject, read_subject
-from human_model.task import Work, read_work
+from human_model.task import Point, Work, read_work
 from lift_predictor.core.exceptions import PlanError
 from lift_predictor.core.planning.fields import Fields
-from lift_predictor.core.planning.plan_task import DEFAULT_DURATION, PlanTask, Point
+from lift_predictor.core.planning.plan_task import DEFAULT_DURATION, PlanTask
 from lift_predictor.core.planning.technique import FREE
 
 MAXIMUM: Final = 'maximum'

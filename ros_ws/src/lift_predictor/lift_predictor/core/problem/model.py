@@ -13,6 +13,7 @@ import numpy as np
 
 from human_model.motion import BodyMotion, Lift
 from human_model.subject import Subject
+from human_model.task import Box
 from human_model.typing import Array
 from lift_predictor.core.planning.plan_task import Feet, PlanTask
 from lift_predictor.core.problem.comparison import ComparedCurves
@@ -20,7 +21,7 @@ from lift_predictor.core.problem.grid import TimeGrid
 from lift_predictor.core.problem.loads import Coordinates, Loads
 from lift_predictor.core.problem.nearest_lift import Way
 from lift_predictor.core.problem.run import SolverRun, Start
-from lift_predictor.core.problem.task import Box, LiftTask
+from lift_predictor.core.problem.task import LiftTask
 from lift_predictor.core.problem.verification import Verification
 from lift_predictor.core.solvers.library import NodeLibrary
 from lift_predictor.core.solvers.solution import InteriorPointOptions

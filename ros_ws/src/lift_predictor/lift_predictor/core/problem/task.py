@@ -4,47 +4,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Final, Protocol, Self
-
-import numpy as np
-
-from human_model.typing import Array
-from lift_predictor.core.exceptions import TaskError
 
 WEIGHT_OFFSET: Final = 10.0
 """Added to the box's weight in the logarithm of equations 2.11 and 3.9 [N]."""
-
-
-@dataclass(frozen=True)
-class Box:
-    """The box of a recorded lift.
-
-    Attributes
-    ----------
-    mass : float
-        [kg]; 0: nothing is lifted.
-    depth : float
-        Extent forward [m] (twice r2 of equation 4.5).
-    start, end : ndarray, shape (3,), or None
-        Centre before and after the lift in the laboratory [m]; None: as recorded.
-    """
-
-    mass: float
-    depth: float = 0.0
-    start: Array | None = None
-    end: Array | None = None
-
-    def __post_init__(self) -> None:
-        """Check every field."""
-        if not (np.isfinite(self.mass) and self.mass >= 0.0):
-            raise TaskError(f'box.mass = {self.mass} kg: a mass of at least 0 is needed')
-        if not (np.isfinite(self.depth) and self.depth >= 0.0):
-            raise TaskError(f'box.depth = {self.depth} m: a length of at least 0 is needed')
-        for name in ('start', 'end'):
-            place = getattr(self, name)
-            if place is not None and not np.all(np.isfinite(place)):
-                raise TaskError(f'box.{name} = {np.asarray(place).tolist()}: not finite')
 
 
 class LiftTask(Protocol):

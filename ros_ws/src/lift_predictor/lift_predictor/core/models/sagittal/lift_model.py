@@ -12,6 +12,7 @@ import numpy as np
 
 from human_model.motion import Lift
 from human_model.subject import Subject
+from human_model.task import Box
 from human_model.typing import Array
 from lift_predictor.core.bspline import simpson_weights
 from lift_predictor.core.models.sagittal import feet as places
@@ -41,7 +42,6 @@ from lift_predictor.core.problem.maximum_weight import open_mass
 from lift_predictor.core.problem.model import LiftModel, LiftResult, Plan, SolveMethod
 from lift_predictor.core.problem.nearest_lift import Way
 from lift_predictor.core.problem.run import SolverRun, Start
-from lift_predictor.core.problem.task import Box
 from lift_predictor.core.problem.verification import DENSITY, Verification
 from lift_predictor.core.solvers.solution import InteriorPointOptions
 from lift_predictor.core.solvers.spline_nlp import SplineNlp

@@ -11,6 +11,7 @@ from typing import Final
 import numpy as np
 
 from human_model.motion import BodyMotion, Lift
+from human_model.task import Box
 from human_model.typing import Array
 from lift_predictor.core.exceptions import TaskError, UnreachableError
 from lift_predictor.core.models.sagittal.grid import LiftBounds
@@ -20,7 +21,6 @@ from lift_predictor.core.models.sagittal.person import Person
 from lift_predictor.core.models.sagittal.plane import SagittalMotion, SagittalPlane, SideView
 from lift_predictor.core.options import POSTURE_TOLERANCE
 from lift_predictor.core.planning.postures import REACHED
-from lift_predictor.core.problem.task import Box
 
 PLACE_ALLOWANCE: Final = 1e-3
 """How far below the lower of its places the box may be carried [m]: what motion capture resolves;

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from human_model.task import Point
 from lift_predictor.core.planning.plan_task import (
     MOVED_ENDS,
     STANDARD_DISTANCE,
     STANDARD_HEIGHT,
     PlanTask,
-    Point,
 )
 
 

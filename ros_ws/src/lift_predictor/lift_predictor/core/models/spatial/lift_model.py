@@ -12,6 +12,7 @@ import numpy as np
 
 from human_model.motion import BodyMotion, Lift
 from human_model.subject import Subject
+from human_model.task import Box
 from human_model.typing import Array
 from lift_predictor.core.exceptions import UnreachableError
 from lift_predictor.core.models.spatial.active_constraints import active_limits
@@ -57,7 +58,6 @@ from lift_predictor.core.problem.model import (
 )
 from lift_predictor.core.problem.nearest_lift import Way
 from lift_predictor.core.problem.run import SolverRun, Start
-from lift_predictor.core.problem.task import Box
 from lift_predictor.core.problem.verification import Verification
 from lift_predictor.core.solvers.solution import InteriorPointOptions
 from lift_predictor.core.solvers.spline_nlp import Assembler, SplineNlp

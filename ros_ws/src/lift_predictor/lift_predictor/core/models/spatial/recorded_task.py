@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from human_model.motion import BodyMotion, Lift
+from human_model.task import Box
 from human_model.typing import Array
 from lift_predictor.core.exceptions import TaskError
 from lift_predictor.core.models.spatial.clearance import recorded_gaps
@@ -31,7 +32,6 @@ from lift_predictor.core.models.spatial.task import (
 )
 from lift_predictor.core.models.spatial.windows import near_posture
 from lift_predictor.core.options import Windows
-from lift_predictor.core.problem.task import Box
 
 
 def recorded_task(

@@ -16,13 +16,13 @@ from itertools import product
 
 import numpy as np
 
+from human_model.task import Point
 from lift_predictor.core.planning.plan_task import (
     MOVED_ENDS,
     STANDARD_DISTANCE,
     STANDARD_HEIGHT,
     Feet,
     PlanTask,
-    Point,
 )
 
 
