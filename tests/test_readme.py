@@ -339,4 +339,4 @@ def test_subject_file_example_is_accepted(tmp_path: Path) -> None:
     path = tmp_path / 'person.yaml'
     path.write_text(block[1], encoding='utf-8')
     entry = read_subject_file(path)
-    assert entry.task.box_mass == 12.0
+    assert entry.task.box.mass == 12.0

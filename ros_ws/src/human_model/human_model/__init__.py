@@ -28,13 +28,16 @@ if TYPE_CHECKING:
     from human_model.skeletons import Skeleton2D, Skeleton3D
     from human_model.strength import JointStrength
     from human_model.subject import Calibration, Subject
+    from human_model.task import Box, Coupling, Task, Work
 
 #: Of all packages; the manifests package.xml repeat it.
 __version__ = '0.1.0'
 
 __all__ = [
     'BodyMotion',
+    'Box',
     'Calibration',
+    'Coupling',
     'ExternalForce',
     'HumanModelError',
     'JointStrength',
@@ -47,6 +50,8 @@ __all__ = [
     'SolveStatus',
     'Storage',
     'Subject',
+    'Task',
+    'Work',
     '__version__',
     'named_subject',
     'read_storage',
@@ -55,7 +60,9 @@ __all__ = [
 
 _MODULES = {
     'BodyMotion': 'motion',
+    'Box': 'task',
     'Calibration': 'subject',
+    'Coupling': 'task',
     'ExternalForce': 'skeleton',
     'HumanModelError': 'exceptions',
     'JointStrength': 'strength',
@@ -68,6 +75,8 @@ _MODULES = {
     'SolveStatus': 'report',
     'Storage': 'opensim_storage',
     'Subject': 'subject',
+    'Task': 'task',
+    'Work': 'task',
     'named_subject': 'named_subjects',
     'read_storage': 'opensim_storage',
     'segment_parameters': 'anthropometry',

@@ -74,7 +74,7 @@ def test_places_of_the_box_may_be_given(make_lift, person) -> None:
 
 def test_circles_never_exclude_the_recorded_lift(make_lift, person) -> None:
     lift = make_lift(7.0)
-    task = build_task(person, lift, replace(BOX, depth=0.40))
+    task = build_task(person, lift, replace(BOX, size=(0.40, 0.305, 0.127)))
     assert task.notes
     assert 'collision circles were reduced' in task.notes[0]
     gaps = chain_positions(task.measured.q, task.parameters, task.measured.grip).gaps

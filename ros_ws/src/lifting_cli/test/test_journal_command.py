@@ -2,12 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """`lift journal` verifies, shows and exports the journal of alarms."""
 
-import csv
-
 import apsw
 import pyarrow.parquet
 import pytest
 
+from human_model.tables import read_file
 from human_model.task import Coupling, Work
 from injury_monitor.core.assignment import Assignment
 from injury_monitor.core.journal import AlarmJournal
@@ -51,10 +50,9 @@ def test_show(path, capsys):
 
 def test_export(path, tmp_path, capsys):
     assert main(['journal', 'export', str(path), str(tmp_path / 'a.csv')]) == 0
-    with (tmp_path / 'a.csv').open() as stream:
-        rows = list(csv.DictReader(stream))
+    rows = read_file(tmp_path / 'a.csv', 'number alarm value')
     assert [row['number'] for row in rows] == ['1', '2']
-    assert float(rows[0]['value']) == 7000.0
+    assert rows[0].number('value') == 7000.0
     assert main(['journal', 'export', str(path), str(tmp_path / 'a.parquet')]) == 0
     table = pyarrow.parquet.read_table(tmp_path / 'a.parquet')
     assert table.column('alarm').to_pylist() == [row['alarm'] for row in rows]
