@@ -25,13 +25,13 @@ from human_model.exceptions import HumanModelError
 from human_model.skeletons import Skeleton3D
 from human_model.subject import Calibration, Subject
 from human_model.typing import Array
+from lifting.recorded_markers import marker_set_of
 from lifting_recordings.exceptions import ConventionError
 from lifting_recordings.messages import MarkerCalibration
 from lifting_recordings.recording import Plate, Recording, centre_of_pressure
 from lifting_recordings.subject_file import QUIET_STANDING, SubjectFile
 from motion_tracker.core.exceptions import MotionTrackerError
 from motion_tracker.core.filters import zero_phase
-from motion_tracker.core.markers.marker_set import load_marker_set
 from motion_tracker.core.quiet_standing import (
     QuietStanding,
     coordinates_of,
@@ -143,11 +143,11 @@ def _offsets(
                 calibration.segments,
                 calibration.offsets,
                 dict(calibration.segment_lengths),
-                calibration.rms,
+                0.0 if np.isnan(calibration.rms) else calibration.rms,
             ),
         )
     rate = 1.0 / float(np.median(np.diff(recording.time)))
-    marker_set = load_marker_set(entry.recording.marker_set)
+    marker_set = marker_set_of(entry)
     skeleton, q = coordinates_of(subject, marker_set, recording.names, recording.markers)
     wrenches = [_wrench(recording.plates[side], recording.time) for side in SIDES]
     force = np.stack([w[:, :3] for w in wrenches], axis=1)

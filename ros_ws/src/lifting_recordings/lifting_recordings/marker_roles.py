@@ -2,24 +2,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which markers tell front from back, right from left and up from down.
 
-Known names stand in `data/marker_roles.csv`; the subject file can name others. Case, blanks and
-punctuation make no difference, the side may stand before or after the name, and OpenCap's ending
-``_study`` is left out: ``RHEE``, ``r heel``, ``R.Heel``, ``heel_right`` and ``r_calc_study`` are
-all known.
+Known names stand in `data/marker_roles.csv`, in any spelling (see `marker_names`); the subject
+file can name others.
 """
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator, Mapping
-from functools import cache
+from collections.abc import Mapping
 
 import numpy as np
 
 from human_model.constants import SIDES
-from human_model.tables import read_table
 from human_model.typing import Array
 from lifting_recordings.exceptions import ConventionError
+from lifting_recordings.marker_names import named_in
 
 ROLES = ('pelvis_front', 'pelvis_back', 'heel', 'toe', 'trunk')
 #: Role whose markers stand in for another where that has none.
@@ -27,45 +23,10 @@ _STAND_IN = {'toe': 'forefoot'}
 #: Names that a message lists.
 _LISTED = 12
 
-_SIDE = {'r': 'right', 'right': 'right', 'l': 'left', 'left': 'left'}
-_BEFORE = re.compile(r'(right|left|r|l)(.+)')
-# After the name a side counts only behind a separator or, as a capital, behind a small letter.
-_AFTER = re.compile(r'(.+?)(?:[\W_]+(?i:(right|left|r|l))|(?<=[a-z])(R|L|Right|Left))')
-
-
-def _folded(text: str) -> str:
-    return re.sub(r'[\W_]+', '', text.lower())
-
-
-@cache
-def _known() -> dict[tuple[str, bool], tuple[str, str]]:
-    """Return role and side of each folded name, and whether it needs a side."""
-    return {
-        (_folded(row['marker']), row['side'] == 'both'): (row['role'], row['side'])
-        for row in read_table('lifting_recordings', 'marker_roles.csv', 'role side marker')
-    }
-
-
-def _meanings(name: str) -> Iterator[tuple[str, str]]:
-    """Yield the name without its side, folded, and the side; '' if it has none."""
-    name = re.sub(r'[\W_]*study$', '', name, flags=re.IGNORECASE)
-    folded = _folded(name)
-    yield folded, ''
-    if before := _BEFORE.fullmatch(folded):
-        yield before[2], _SIDE[before[1]]
-    if folded.startswith(('right', 'left')):
-        yield folded[1:], _SIDE[folded[0]]
-    if after := _AFTER.fullmatch(name):
-        yield _folded(after[1]), _SIDE[(after[2] or after[3]).lower()]
-
 
 def known_role(name: str) -> tuple[str, str] | None:
     """Return role and side of a marker by its name; None if it is not known."""
-    for base, side in _meanings(name):
-        found = _known().get((base, bool(side)))
-        if found is not None:
-            return found[0], side or found[1]
-    return None
+    return named_in('marker_roles.csv', 'role', name)
 
 
 class MarkerRoles:

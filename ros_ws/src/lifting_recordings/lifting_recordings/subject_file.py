@@ -12,6 +12,8 @@
       age: 31                  # years
       strength_z: 0.0          # optional, standard deviations from the population mean
       segment_lengths: {}      # optional, name: m
+      joint_widths: {}         # optional, knee, ankle, elbow: m; for static trials without medial
+                               # markers
       source: in words         # optional, what was measured and what assumed
     task:
       task_id: squats
@@ -27,7 +29,7 @@
       control_at_destination: false  # optional
       simulated: false         # optional
     recording:                 # optional
-      marker_set: plug_in_gait_58    # name of the marker set the tracker is to use
+      marker_set: plug_in_gait_58    # name of a marker set, or a CSV file beside this file
       rename: {OLD: NEW}       # marker names of the file to names of the set
       roles: {HEEL_R: heel right}    # for marker names the importer does not know
       box_markers: {BOX1: [x, y, z]} # three or more, m from the box centre, box axes
@@ -45,6 +47,10 @@ from human_model.fields import Fields
 from human_model.subject import Subject, read_subject
 from human_model.task import Box, Task, read_work
 from lifting_recordings.exceptions import SubjectFileError
+
+#: Joints whose width replaces a medial marker, and limits of a width.
+_WIDE_JOINTS = ('knee', 'ankle', 'elbow')
+_JOINT_WIDTH = (0.03, 0.2, 'm')
 
 #: Where the plates are: as the file says, or as quiet standing says (see `plate_registration`).
 AS_RECORDED, QUIET_STANDING = 'as_recorded', 'quiet_standing'
@@ -71,6 +77,7 @@ class SubjectFile:
     source: str
     task: Task
     recording: RecordingEntry
+    joint_widths: Mapping[str, float] = field(default_factory=dict)
 
 
 class _Section(Fields):
@@ -94,11 +101,17 @@ def read_subject_file(path: str | Path) -> SubjectFile:
     """
     path = Path(path)
     whole = _Section.read(path)
-    subject, source = _subject(whole.section('subject'))
+    person = whole.section('subject')
+    widths = person.section('joint_widths', {})
+    joint_widths = {
+        name: widths.within(name, _JOINT_WIDTH) for name in _WIDE_JOINTS if name in widths
+    }
+    widths.finish()
+    subject, source = _subject(person)
     task = _task(whole.section('task'))
     recording = _recording(whole.section('recording', {}))
     whole.finish()
-    return SubjectFile(path, subject, source, task, recording)
+    return SubjectFile(path, subject, source, task, recording, joint_widths)
 
 
 def read_person(path: str | Path) -> Subject:
@@ -109,7 +122,9 @@ def read_person(path: str | Path) -> Subject:
     SubjectFileError
         Naming file, field and value.
     """
-    return _subject(_Section.read(Path(path)).section('subject'))[0]
+    section = _Section.read(Path(path)).section('subject')
+    section.take('joint_widths', {})
+    return _subject(section)[0]
 
 
 def _subject(section: _Section) -> tuple[Subject, str]:

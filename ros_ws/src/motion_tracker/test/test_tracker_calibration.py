@@ -13,6 +13,7 @@ from motion_tracker.core.calibration import calibrate
 from motion_tracker.core.exceptions import CalibrationError
 from motion_tracker.core.inverse_kinematics.inverse_kinematics import InverseKinematics
 from motion_tracker.core.markers.marker_model import model_for
+from motion_tracker.core.markers.marker_set import load_marker_set
 
 #: This person is not as the tables say.
 OWN = {'thigh': 0.45, 'shank': 0.40, 'upper_arm': 0.30, 'forearm': 0.26}
@@ -119,8 +120,65 @@ def test_millimetres_motion_and_absent_landmarks_are_refused(person, own, marker
     with pytest.raises(CalibrationError, match='moves'):
         calibrate(marker_set, names, moving, person)
     hidden = positions.copy()
-    hidden[:, names.index('RANKM')] = np.nan
-    with pytest.raises(CalibrationError, match="'RANKM'"):
+    hidden[:, names.index('RANK')] = np.nan
+    with pytest.raises(CalibrationError, match=r"'RANK'.*rename: \{NAME: RANK\}"):
         calibrate(marker_set, names, hidden, person)
     with pytest.raises(CalibrationError, match=r'\(frames, 57, 3\)'):
         calibrate(marker_set, names[:-1], positions, person)
+
+
+@pytest.mark.parametrize('set_name', ['plug_in_gait_58', 'plug_in_gait_39'])
+def test_widths_stand_in_for_medial_markers(person, own, marker_set, set_name):
+    """The centres move by less than 20 mm, as measured on a real trial (joint_widths)."""
+    _, names, positions, _ = trial(own, marker_set, noise=5e-4)
+    whole = calibrate(marker_set, names, positions, person)
+    lateral = [i for i, name in enumerate(names) if name[1:] not in ('KNEM', 'ANKM', 'ELBM')]
+    widths = {'knee': 0.0826, 'ankle': 0.0654}
+    found = calibrate(
+        load_marker_set(set_name),
+        [names[i] for i in lateral],
+        positions[:, lateral],
+        person,
+        widths,
+    )
+    for joint, centre in whole.joint_centres.items():
+        moved = np.linalg.norm(found.joint_centres[joint] - centre)
+        assert moved < 0.02, joint
+    text = ' '.join(found.statements)
+    assert 'knee_r: no marker RKNEM; centre 48 mm inward of RKNE (width in the subject' in text
+    assert 'elbow_l: no marker LELBM' in text
+    assert 'distance of the landmarks in plug_in_gait' in text
+    wider = calibrate(
+        load_marker_set(set_name),
+        [names[i] for i in lateral],
+        positions[:, lateral],
+        person,
+        {**widths, 'knee': 0.1226},
+    )
+    apart = wider.joint_centres['knee_r'] - found.joint_centres['knee_r']
+    assert np.linalg.norm(apart) == pytest.approx(0.02, abs=1e-6)
+
+
+def test_sacrum_stands_in_for_both_posterior_spines(person, own, marker_set):
+    _, names, positions, _ = trial(own, marker_set)
+    whole = calibrate(marker_set, names, positions, person)
+    columns = [names.index(name) for name in ('RPSI', 'LPSI')]
+    sacrum = positions[:, columns].mean(axis=1, keepdims=True)
+    keep = [i for i in range(len(names)) if i not in columns]
+    found = calibrate(
+        load_marker_set('plug_in_gait_39'),
+        [*(names[i] for i in keep), 'SACR'],
+        np.concatenate((positions[:, keep], sacrum), axis=1),
+        person,
+    )
+    for joint in ('hip_r', 'hip_l'):
+        np.testing.assert_allclose(
+            found.joint_centres[joint], whole.joint_centres[joint], atol=2e-3
+        )
+
+
+def test_landmark_far_from_its_place_is_refused_by_name(person, own, marker_set):
+    _, names, positions, _ = trial(own, marker_set)
+    positions[:, names.index('RICR')] += (0.0, -0.25, 0.0)
+    with pytest.raises(CalibrationError, match=r'RICR is \d+ mm from its anatomical place'):
+        calibrate(marker_set, names, positions, person)

@@ -5,12 +5,15 @@
 import numpy as np
 import pytest
 
+from human_model.exceptions import TableError
 from motion_tracker.core.exceptions import CalibrationError
 from motion_tracker.core.markers.joint_centres import (
+    SEGMENT_OF_JOINT,
     harrington_hip,
     joint_centres,
     load_joint_definitions,
 )
+from motion_tracker.core.markers.marker_set import load_marker_set
 
 #: Pelvis 250 mm wide, 150 mm deep, leg of 900 mm; x forward, y left, z up, origin at mid-ASIS.
 ASIS = {'r': np.array([0.0, -0.125, 0.0]), 'l': np.array([0.0, 0.125, 0.0])}
@@ -33,11 +36,37 @@ def test_hip_centre_by_hand(side, turned):
 
 
 def test_missing_landmark_is_named_with_its_joint():
-    definitions = load_joint_definitions('plug_in_gait_58')
+    definitions = load_joint_definitions(load_marker_set('plug_in_gait_58'))
     with pytest.raises(CalibrationError, match=r"'RASI'.*hip_r.*Harrington"):
         joint_centres(definitions, {'LASI': ASIS['l']}, {})
 
 
-def test_set_without_definitions_is_named():
-    with pytest.raises(CalibrationError, match="'own_set'"):
-        load_joint_definitions('own_set')
+SET = 'marker,segment,x,y,z,scale_with,weight,tracking\n' + '\n'.join(
+    f'{name},pelvis,,,,,1,yes' for name in 'ABCDEFGHIJKL'
+)
+
+
+def own_set(folder):
+    (folder / 'mine.csv').write_text(SET)
+    return load_marker_set(folder / 'mine.csv')
+
+
+def test_own_set_without_definitions_says_what_to_write(tmp_path):
+    with pytest.raises(CalibrationError, match=r'mine_joint_centres\.csv: no joint centre hip_r'):
+        load_joint_definitions(own_set(tmp_path))
+
+
+def test_own_set_with_definitions_beside_it(tmp_path):
+    rows = [
+        f'{joint},marker,{n}' for joint, n in zip(SEGMENT_OF_JOINT, 'ABCDEFGHIJKL', strict=True)
+    ]
+    table = tmp_path / 'mine_joint_centres.csv'
+    table.write_text('\n'.join(['joint,method,markers', *rows]))
+    found = load_joint_definitions(own_set(tmp_path))
+    assert [d.joint for d in found] == list(SEGMENT_OF_JOINT)
+    table.write_text('\n'.join(['joint,method,markers', *rows]).replace('marker,A', 'marker,X'))
+    with pytest.raises(TableError, match=r'mine_joint_centres\.csv.*mine has no marker X'):
+        load_joint_definitions(own_set(tmp_path))
+    table.write_text('\n'.join(['joint,method,markers', *rows[1:]]))
+    with pytest.raises(CalibrationError, match='no joint centre hip_r for'):
+        load_joint_definitions(own_set(tmp_path))

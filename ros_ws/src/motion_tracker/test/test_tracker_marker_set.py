@@ -25,13 +25,15 @@ HEADER = COLUMNS.replace(' ', ',')
 
 
 def test_the_sets_have_the_size_their_names_say():
-    assert available() == ('opencap_lab_51', 'plug_in_gait_58')
+    assert available() == ('opencap_lab_51', 'plug_in_gait_39', 'plug_in_gait_58')
     assert len(load_marker_set('plug_in_gait_58').names) == 58
+    # Six medial landmarks that are not worn, and SACR in place of LPSI and RPSI.
+    assert len(load_marker_set('plug_in_gait_39').names) == 39 + 6 + 1
     # Four medial markers more, worn in the static trial only.
     assert len(load_marker_set('opencap_lab_51').names) == 51 + 4
 
 
-@pytest.mark.parametrize('name', ['opencap_lab_51', 'plug_in_gait_58'])
+@pytest.mark.parametrize('name', available())
 def test_every_marker_sits_on_a_segment_of_the_skeleton_and_names_its_source(name):
     segments = Skeleton3D.of(REFERENCE_SUBJECT).segments
     for marker in load_marker_set(name).markers:
@@ -52,7 +54,7 @@ def test_joint_centres_of_the_marker_set_are_those_of_the_skeleton(person, skele
         markers[name] = frame[:3, :3] @ local + frame[:3, 3]
     points = skeleton.points(np.zeros(len(skeleton.coordinates)))
     definitions = [
-        d for d in load_joint_definitions('plug_in_gait_58') if not d.joint.startswith('shoulder')
+        d for d in load_joint_definitions(marker_set) if not d.joint.startswith('shoulder')
     ]
     for joint, centre in joint_centres(tuple(definitions), markers, {}).items():
         if joint.startswith('hip'):

@@ -14,6 +14,7 @@ from motion_tracker.core.markers.segment_measures import measured_lengths
 FRONT_AND_BACK = {
     'plug_in_gait_58': (('RASI', 'LASI'), ('RPSI', 'LPSI')),
     'opencap_lab_51': (('r.ASIS', 'L.ASIS'), ('r.PSIS', 'L.PSIS')),
+    'plug_in_gait_39': (('RASI', 'LASI'), ('RPSI', 'LPSI')),
 }
 
 

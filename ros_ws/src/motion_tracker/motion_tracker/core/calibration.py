@@ -30,6 +30,7 @@ from motion_tracker.core.markers.joint_centres import (
     joint_centres,
     load_joint_definitions,
 )
+from motion_tracker.core.markers.joint_widths import completed
 from motion_tracker.core.markers.marker_model import MarkerModel, from_calibration
 from motion_tracker.core.markers.marker_set import MarkerSet
 from motion_tracker.core.markers.segment_measures import measured_lengths
@@ -59,6 +60,10 @@ STRAIGHT_WEIGHT = 10.0
 
 #: A static trial whose markers move more than this (standard deviation) is not static [m].
 LARGEST_SWAY = 0.02
+
+#: A static trial with a landmark or joint centre further than this from its anatomical place is
+#: not one [m]: the limit of a marker in a frame, `IKSettings.max_residual`.
+LARGEST_MISFIT = 0.08
 
 #: The trunk's lengths, which are scaled together.
 _TRUNK = (
@@ -107,7 +112,11 @@ class StaticCalibration:
 
 
 def calibrate(
-    marker_set: MarkerSet, names: Sequence[str], positions: npt.ArrayLike, subject: Subject
+    marker_set: MarkerSet,
+    names: Sequence[str],
+    positions: npt.ArrayLike,
+    subject: Subject,
+    widths: Mapping[str, float] | None = None,
 ) -> StaticCalibration:
     """Calibrate from a static trial.
 
@@ -121,11 +130,14 @@ def calibrate(
         Shape (frames, n, 3), REP-103 world [m]; NaN where not seen.
     subject
         The person; its own ``lengths`` are kept, its ``calibration`` is not used.
+    widths
+        Measured widths of joints without a medial marker, 'knee', 'ankle' and 'elbow' [m].
 
     Raises
     ------
     CalibrationError
-        If the trial moves, is not in metres, or a marker that is needed was never seen.
+        If the trial moves, is not in metres, a marker that is needed was never seen, or a
+        landmark is too far from its anatomical place.
     """
     array = np.asarray(positions, dtype=np.float64)
     if array.ndim != 3 or array.shape[1:] != (len(names), 3) or not len(array):
@@ -143,9 +155,12 @@ def calibrate(
     absent = [m.name for m in marker_set.markers if m.tracking and m.name not in known]
     if absent:
         statements.append(f'tracking markers not in the static trial: {", ".join(absent)}')
-    definitions = load_joint_definitions(marker_set.name)
+    definitions = load_joint_definitions(marker_set)
     person = replace(subject, calibration=None)
-    lengths, centres = _measure(marker_set, definitions, known, person)
+    whole = completed(
+        marker_set, definitions, known, segment_lengths(person)[0], dict(widths or {})
+    )
+    lengths, centres = _measure(marker_set, definitions, whole.markers, person)
     skeleton = Skeleton3D.of(replace(person, lengths={**lengths, **subject.lengths}))
     posture, rms, worst = _posture(marker_set, skeleton, known, centres)
     if _NECK in known and 'c7_height' not in subject.lengths:
@@ -157,6 +172,7 @@ def calibrate(
         tuple(m.name for m in tracked), tuple(m.segment for m in tracked), offsets, lengths
     )
     residual = _residual(skeleton, draft, marker_set, names, array, posture)
+    statements += whole.statements
     statements += [
         f'{d.joint}: {d.method.replace("_", " ")} of {" ".join(d.markers)} ({d.source})'
         for d in definitions
@@ -317,6 +333,14 @@ def _posture(
     if not solution.ok:
         raise CalibrationError(
             f'static trial: the posture could not be fitted: {solution.message}'
+        )
+    worst = int(np.nanargmax(solution.residuals))
+    if solution.residuals[worst] > LARGEST_MISFIT:
+        raise CalibrationError(
+            f'static trial: {model.names[worst]} is {1000 * solution.residuals[worst]:.0f} mm '
+            f'from its anatomical place, more than {1000 * LARGEST_MISFIT:.0f} mm: does the '
+            'person stand upright, is the marker on this landmark (recording.rename), is '
+            'subject.stature right?'
         )
     return solution.q, solution.rms, solution.maximum
 

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from human_model.tables import read_table
+from human_model.tables import read_file, read_table
 from human_model.typing import Array
 from motion_tracker.core.exceptions import CalibrationError
+from motion_tracker.core.markers.marker_set import MarkerSet
 
 #: Segment whose proximal joint each centre is.
 SEGMENT_OF_JOINT = {
@@ -38,30 +39,50 @@ class JointDefinition:
     source: str
 
 
-def load_joint_definitions(marker_set: str) -> tuple[JointDefinition, ...]:
+def load_joint_definitions(marker_set: MarkerSet) -> tuple[JointDefinition, ...]:
     """Definitions that belong to a marker set.
+
+    Those of a set of one's own are in a file beside it, ``<set>_joint_centres.csv`` with the
+    columns ``joint``, ``method`` and ``markers``.
 
     Raises
     ------
     CalibrationError
         If the set has none.
+    TableError
+        If a row is damaged.
     """
     joints = {joint: joint for joint in SEGMENT_OF_JOINT}
+    columns = 'joint method markers'
+    if marker_set.path is None:
+        rows = read_table('motion_tracker', 'joint_centres.csv', f'marker_set {columns}')
+        rows = tuple(row for row in rows if row['marker_set'] == marker_set.name)
+        where = 'joint_centres.csv'
+    else:
+        path = marker_set.path.with_name(f'{marker_set.name}_joint_centres.csv')
+        rows, where = (read_file(path, columns) if path.is_file() else ()), str(path)
     found = []
-    for row in read_table(
-        'motion_tracker', 'joint_centres.csv', 'marker_set joint method markers'
-    ):
-        if row['marker_set'] != marker_set:
-            continue
+    for row in rows:
         names = tuple(row['markers'].split())
         count = row.choice('method', _METHODS)
         if len(names) != count:
             raise row.error('markers', f'{count} markers are needed')
+        unknown = [name for name in names if name not in marker_set.names]
+        if unknown:
+            raise row.error('markers', f'{marker_set.name} has no marker {unknown[0]}')
         found.append(
-            JointDefinition(row.choice('joint', joints), row['method'], names, row['source'])
+            JointDefinition(
+                row.choice('joint', joints), row['method'], names, row.get('source', where)
+            )
         )
-    if not found:
-        raise CalibrationError(f'joint_centres.csv: no joint centres for {marker_set!r}')
+    absent = [joint for joint in joints if joint not in {d.joint for d in found}]
+    if absent:
+        raise CalibrationError(
+            f'{where}: no joint centre {", ".join(absent)} for marker set {marker_set.name!r}: '
+            f'a static trial needs a table with the columns {columns} and a row for each joint, '
+            f'for example knee_r,midpoint,RKNE RKNEM; methods are {", ".join(_METHODS)}. Without '
+            '--static the positions of the marker set are used'
+        )
     return tuple(found)
 
 
@@ -132,7 +153,8 @@ def joint_centres(
         if absent:
             raise CalibrationError(
                 f'static trial: marker {absent[0]!r} is missing, it is needed '
-                f'for {definition.joint} ({definition.source})'
+                f'for {definition.joint} ({definition.source}): if it has another name, write '
+                f'recording: {{rename: {{NAME: {absent[0]}}}}} in the subject file'
             )
         at = [np.asarray(markers[name]) for name in definition.markers]
         if definition.method == 'harrington_2007':

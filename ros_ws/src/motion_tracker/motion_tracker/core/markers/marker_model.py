@@ -92,9 +92,11 @@ def model_for(subject: Subject, marker_set: MarkerSet | None) -> tuple[MarkerMod
         If the subject has no calibration and no marker set is given.
     """
     if subject.calibration is not None and subject.calibration.marker_names:
+        rms = subject.calibration.residual_rms
         return (
             from_calibration(subject.calibration, marker_set),
-            f'static trial, {1000 * subject.calibration.residual_rms:.1f} mm rms',
+            # A recording without a static trial carries its marker set scaled, with residual 0.
+            f'static trial, {1000 * rms:.1f} mm rms' if rms > 0.0 else 'scaled by anthropometry',
         )
     if marker_set is None:
         raise MarkerSetError(

@@ -63,10 +63,13 @@ class MarkerSet:
     ----------
     name : str
     markers : tuple of Marker
+    path : Path or None
+        File of a set of one's own; None for a set of the package.
     """
 
     name: str
     markers: tuple[Marker, ...]
+    path: Path | None = None
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -135,7 +138,8 @@ def load_marker_set(name: str | Path) -> MarkerSet:
     for marker in names:
         if names.count(marker) > 1:
             raise MarkerSetError(f'{name}: marker {marker!r} occurs {names.count(marker)} times')
-    return MarkerSet(Path(name).stem, markers)
+    own = str(name).endswith('.csv')
+    return MarkerSet(Path(name).stem, markers, Path(name) if own else None)
 
 
 def _parse(row: Row) -> Marker:
