@@ -12,7 +12,24 @@ class HumanModelError(LiftingError, ValueError):
 
 
 class SubjectError(HumanModelError):
-    """A field of the subject is missing, of the wrong kind or out of its range."""
+    """A field of the subject is missing, of the wrong kind or out of its range.
+
+    Attributes
+    ----------
+    field : str
+        Name with its place, for example ``subject.mass``.
+    value : object
+        Offending value; None: the field is missing.
+    problem : str
+    """
+
+    def __init__(self, field: str, value: object, problem: str) -> None:
+        super().__init__(field, value, problem)
+        self.field, self.value, self.problem = field, value, problem
+
+    def __str__(self) -> str:
+        """Return field and problem."""
+        return f'{self.field}: {self.problem}'
 
 
 class MotionError(HumanModelError):

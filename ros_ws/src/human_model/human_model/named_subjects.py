@@ -22,7 +22,9 @@ def named_subject(name: str) -> Subject:
     """
     rows = _subjects()
     if name not in rows:
-        raise SubjectError(f'no subject named {name!r}; there are {", ".join(rows)}')
+        raise SubjectError(
+            'subject', name, f'no subject named {name!r}; there are {", ".join(rows)}'
+        )
     row = rows[name]
     return Subject(
         pseudonym=name,

@@ -29,10 +29,10 @@ LENGTH_RANGE = (-0.2, 1.2)
 
 def _real(name: str, value: object) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
-        raise SubjectError(f'subject.{name}: a number is needed, got {value!r}')
+        raise SubjectError(f'subject.{name}', value, f'a number is needed, got {value!r}')
     number = float(value)
     if not np.isfinite(number):
-        raise SubjectError(f'subject.{name}: a finite number is needed, got {number}')
+        raise SubjectError(f'subject.{name}', number, f'a finite number is needed, got {number}')
     return number
 
 
@@ -71,15 +71,21 @@ class Calibration:
         n = len(self.marker_names)
         if len(self.segments) != n or offsets.shape != (n, 3):
             raise SubjectError(
-                f'calibration: {n} marker names, {len(self.segments)} segments and '
-                f'local_offsets of shape {offsets.shape} do not belong together'
+                'calibration',
+                (n, len(self.segments), offsets.shape),
+                f'{n} marker names, {len(self.segments)} segments and local_offsets of shape '
+                f'{offsets.shape} do not belong together',
             )
         if len(set(self.marker_names)) != n:
-            raise SubjectError('calibration.marker_names: a name occurs twice')
+            raise SubjectError(
+                'calibration.marker_names', self.marker_names, 'a name occurs twice'
+            )
         if not np.all(np.isfinite(offsets)):
-            raise SubjectError('calibration.local_offsets: not finite')
+            raise SubjectError('calibration.local_offsets', offsets, 'not finite')
         if not _real('calibration.residual_rms', self.residual_rms) >= 0.0:
-            raise SubjectError(f'calibration.residual_rms: negative, got {self.residual_rms}')
+            raise SubjectError(
+                'calibration.residual_rms', self.residual_rms, f'negative, got {self.residual_rms}'
+            )
 
     def to_dict(self) -> dict[str, Any]:
         """Plain dictionary (lists, numbers, strings) of the calibration."""
@@ -96,7 +102,7 @@ class Calibration:
         """Inverse of `to_dict`; a missing field is named."""
         for name in ('marker_names', 'segments', 'local_offsets'):
             if name not in fields:
-                raise SubjectError(f'calibration.{name}: missing')
+                raise SubjectError(f'calibration.{name}', None, 'missing')
         return cls(
             tuple(fields['marker_names']),
             tuple(fields['segments']),
@@ -142,33 +148,46 @@ class Subject:
     def __post_init__(self) -> None:
         """Check every field against its range."""
         if not isinstance(self.pseudonym, str) or not self.pseudonym.strip():
-            raise SubjectError(f'subject.pseudonym: a name is needed, got {self.pseudonym!r}')
+            raise SubjectError(
+                'subject.pseudonym', self.pseudonym, f'a name is needed, got {self.pseudonym!r}'
+            )
         if self.sex not in SEXES:
-            raise SubjectError(f'subject.sex: {" or ".join(SEXES)} is needed, got {self.sex!r}')
+            raise SubjectError(
+                'subject.sex', self.sex, f'{" or ".join(SEXES)} is needed, got {self.sex!r}'
+            )
         for name, (low, high, unit) in RANGES.items():
             value = _real(name, getattr(self, name))
             if not low <= value <= high:
                 raise SubjectError(
-                    f'subject.{name}: {value:g} {unit} is outside of '
-                    f'{low:g} to {high:g} {unit}, the range this model accepts'
+                    f'subject.{name}',
+                    value,
+                    f'{value:g} {unit} is outside of {low:g} to {high:g} {unit}, the range this '
+                    'model accepts',
                 )
             object.__setattr__(self, name, value)
         if not isinstance(self.lengths, Mapping):
             raise SubjectError(
-                f'subject.lengths: lengths by name are needed, got {self.lengths!r}'
+                'subject.lengths',
+                self.lengths,
+                f'lengths by name are needed, got {self.lengths!r}',
             )
         lengths = {}
         for name, length in self.lengths.items():
             value = _real(f'lengths[{name}]', length)
             if not LENGTH_RANGE[0] <= value <= LENGTH_RANGE[1]:
                 raise SubjectError(
-                    f'subject.lengths[{name}]: {value:g} m is outside of '
-                    f'{LENGTH_RANGE[0]:g} to {LENGTH_RANGE[1]:g} m'
+                    f'subject.lengths[{name}]',
+                    value,
+                    f'{value:g} m is outside of {LENGTH_RANGE[0]:g} to {LENGTH_RANGE[1]:g} m',
                 )
             lengths[str(name)] = value
         object.__setattr__(self, 'lengths', lengths)
         if self.calibration is not None and not isinstance(self.calibration, Calibration):
-            raise SubjectError(f'subject.calibration: no calibration, got {self.calibration!r}')
+            raise SubjectError(
+                'subject.calibration',
+                self.calibration,
+                f'no calibration, got {self.calibration!r}',
+            )
 
     def to_dict(self) -> dict[str, Any]:
         """Plain dictionary (for YAML or JSON) of the subject."""
@@ -204,10 +223,10 @@ class Subject:
         }
         unknown = sorted(set(fields) - known)
         if unknown:
-            raise SubjectError(f'subject: unknown field {unknown[0]!r}')
+            raise SubjectError('subject', unknown[0], f'unknown field {unknown[0]!r}')
         missing = sorted({'pseudonym', 'sex', 'mass', 'stature', 'age'} - set(fields))
         if missing:
-            raise SubjectError(f'subject.{missing[0]}: missing')
+            raise SubjectError(f'subject.{missing[0]}', None, 'missing')
         values = dict(fields)
         calibration = values.get('calibration')
         if isinstance(calibration, Mapping):

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Subjects, calibrations and solve reports."""
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -72,3 +74,11 @@ def test_report_says_whether_the_data_are_good():
     assert SolveReport.from_dict(report.to_dict()) == report
     with pytest.raises(ValueError, match='999'):
         SolveReport(999)
+
+
+def test_error_carries_the_value_and_survives_a_process():
+    with pytest.raises(SubjectError) as caught:
+        Subject('S1', 'male', 900.0, 1.75, 30.0)
+    copy = pickle.loads(pickle.dumps(caught.value))
+    assert (copy.field, copy.value) == ('subject.mass', 900.0)
+    assert str(copy) == str(caught.value)
