@@ -1,58 +1,55 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""The injury monitor's node that says when it has judged a live sample: for latencies only.
+"""The injury monitor with one output more, for latencies only.
 
-The monitor itself speaks only when an alarm changes. Here it also publishes, on `judged`, the
-stamp of each live sample of which spine load, joint torques and activations have been judged: an
-alarm of that sample would have been published by then.
+The monitor publishes only when an alarm changes. Here it also publishes, on `judged`, the stamp
+of each live sample whose spine load, joint torques and activations have been processed: an alarm
+of that sample has been published before.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-
-from lifting_interfaces.msg import SpineLoad
-from std_msgs.msg import Header
+from collections.abc import Iterator
+from typing import ClassVar
 
 from injury_monitor.injury_monitor_node import InjuryMonitorNode
-from lifting_messages import Message, encode, make
-from lifting_node import qos
+from injury_monitor.station import MonitorStation
+from lifting_messages import Message, make, message_type
+from lifting_messages.station import Output
+from lifting_messages.topics import Quality, Topic
 from lifting_node.run import run_node
 
-#: Messages that the monitor judges of a live sample.
-PARTS = 3
+#: Topics with the loads of a live sample.
+PARTS = ('spine_load', 'joint_torques', 'muscle_analysis')
+
+LIVE = message_type('SpineLoad').LIVE
 
 
-class ProbedMonitorNode(InjuryMonitorNode):
-    """The node with one publisher more."""
+class ProbedStation(MonitorStation):
+    """The station with the additional output."""
 
-    def build(self) -> None:
-        """Build the node and the publisher."""
-        super().build()
-        self._parts: Counter[tuple[int, int]] = Counter()
-        self._judged = self.advertise(Header, 'judged', qos.FRAMES)
+    OUTPUTS = (*MonitorStation.OUTPUTS, Topic('judged', 'std_msgs/Header', Quality.FRAMES))
 
-    def _on_spine_load(self, message: Message) -> None:
-        super()._on_spine_load(message)
-        self._part(message)
+    parts: ClassVar[Counter[tuple[int, int]]] = Counter()
 
-    def _on_joint_torques(self, message: Message) -> None:
-        super()._on_joint_torques(message)
-        self._part(message)
-
-    def _on_muscle_analysis(self, message: Message) -> None:
-        super()._on_muscle_analysis(message)
-        self._part(message)
-
-    def _part(self, message: Message) -> None:
-        if message.source != SpineLoad.LIVE:
+    def receive(self, topic: str, message: Message) -> Iterator[Output]:
+        """Take a message; yield the stamp of a sample after its last load."""
+        yield from super().receive(topic, message)
+        if topic not in PARTS or message.source != LIVE:
             return
         stamp = message.header.stamp
         key = (stamp.sec, stamp.nanosec)
-        self._parts[key] += 1
-        if self._parts[key] == PARTS:
-            del self._parts[key]
-            self._judged.publish(encode(make('std_msgs/Header', stamp=stamp)))
+        self.parts[key] += 1
+        if self.parts[key] == len(PARTS):
+            del self.parts[key]
+            yield 'judged', make('std_msgs/Header', stamp=stamp)
+
+
+class ProbedMonitorNode(InjuryMonitorNode):
+    """The node of the probed station."""
+
+    STATION = ProbedStation
 
 
 if __name__ == '__main__':

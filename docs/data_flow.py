@@ -82,13 +82,17 @@ class Edge:
 
 @dataclass(frozen=True)
 class Label:
-    """Lines of text beside an arrow; kind is topic or what."""
+    """Lines of text beside an arrow; kind is topic or what.
+
+    `flow` names the packages at both ends of the arrow; '' is outside of the graph.
+    """
 
     x: float
     y: float
     lines: tuple[str, ...]
     kind: str = 'topic'
     anchor: str = 'start'
+    flow: tuple[str, str] | None = None
 
     def svg(self) -> str:
         """Return the label as SVG."""
@@ -132,6 +136,10 @@ EDGES = (
     Edge(((470, 595), (470, 674), (322, 674)), soft=True),
     Edge(((320, 706), (658, 706))),
 )
+TRACKER, PREDICTOR = 'motion_tracker', 'lift_predictor'
+ANALYZER, MONITOR = 'muscle_analyzer', 'injury_monitor'
+VIEW = 'lifting_visualization'
+
 LABELS = (
     Label(247, 41, ('lift import',), 'what', 'middle'),
     Label(
@@ -142,6 +150,7 @@ LABELS = (
             'force_plates/{right,left}/wrench',
             'force_plates/{right,left}/wrench_block',
         ),
+        flow=('', TRACKER),
     ),
     Label(20, 108, ('subject, task',)),
     Label(20, 124, ('from the bag to every node',), 'what'),
@@ -153,19 +162,20 @@ LABELS = (
             'ground_reaction/{wrench,cop}',
             'force_plates/{right,left}/cop',
         ),
+        flow=(TRACKER, ''),
     ),
-    Label(198, 254, ('measured_lift',)),
-    Label(726, 290, ('body_motion (live)', 'measured_lift')),
-    Label(484, 280, ('measured_lift',), 'topic', 'end'),
-    Label(405, 332, ('predicted_lift',), 'topic', 'middle'),
-    Label(258, 422, ('predicted_lift',)),
-    Label(12, 428, ('lift_comparison', 'predicted_lift/joint_trajectory')),
-    Label(572, 448, ('spine_load, muscle_analysis', 'joint_torques')),
-    Label(770, 428, ('joint_reactions', 'l5_s1/reaction')),
-    Label(590, 560, ('alarms, alarm_states', 'risk_assessment')),
+    Label(198, 254, ('measured_lift',), flow=(TRACKER, PREDICTOR)),
+    Label(726, 290, ('body_motion (live)', 'measured_lift'), flow=(TRACKER, ANALYZER)),
+    Label(484, 280, ('measured_lift',), 'topic', 'end', (TRACKER, MONITOR)),
+    Label(405, 332, ('predicted_lift',), 'topic', 'middle', (PREDICTOR, ANALYZER)),
+    Label(258, 422, ('predicted_lift',), flow=(PREDICTOR, MONITOR)),
+    Label(12, 428, ('lift_comparison', 'predicted_lift/joint_trajectory'), flow=(PREDICTOR, '')),
+    Label(572, 448, ('spine_load, muscle_analysis', 'joint_torques'), flow=(ANALYZER, MONITOR)),
+    Label(770, 428, ('joint_reactions', 'l5_s1/reaction'), flow=(ANALYZER, '')),
+    Label(590, 560, ('alarms, alarm_states', 'risk_assessment'), flow=(MONITOR, '')),
     Label(332, 562, ('results of all nodes',), 'what'),
-    Label(490, 698, ('visualization, robot_description',), 'topic', 'middle'),
-    Label(490, 722, ('/tf, /tf_static',), 'topic', 'middle'),
+    Label(490, 698, ('visualization, robot_description',), 'topic', 'middle', (VIEW, '')),
+    Label(490, 722, ('/tf, /tf_static',), 'topic', 'middle', (VIEW, '')),
 )
 
 

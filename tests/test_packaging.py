@@ -13,6 +13,7 @@ import sys
 import tomllib
 from collections.abc import Iterator
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -168,6 +169,14 @@ def imported_modules(package: Path) -> set[str]:
     return found - STANDARD_LIBRARY - OTHER_ENVIRONMENT - {package.name}
 
 
+def message_packages(package: Path) -> set[str]:
+    """Return the packages with the types of the declared topics."""
+    if not (package / package.name / f'{package.name}_node.py').exists():
+        return set()
+    topics = import_module(f'{package.name}.topics')
+    return {topic.type.partition('/')[0] for topic in (*topics.INPUTS, *topics.OUTPUTS)}
+
+
 def test_workspace_has_the_packages_of_the_graph() -> None:
     assert {
         'lifting_interfaces',
@@ -247,9 +256,9 @@ def test_entry_points_exist(package: Path) -> None:
 
 
 @pytest.mark.parametrize('package', PYTHON_PACKAGES, ids=lambda path: path.name)
-def test_manifest_names_what_is_imported(package: Path) -> None:
+def test_manifest_names_the_imports_and_the_types_of_topics(package: Path) -> None:
     declared = dependencies(manifest(package), 'exec_depend', 'depend')
-    modules = imported_modules(package) - WITHOUT_ROSDEP_KEY
+    modules = imported_modules(package) - WITHOUT_ROSDEP_KEY | message_packages(package)
     needed = {ROSDEP_KEYS.get(module, module) for module in modules}
     assert not needed - declared, f'package.xml lacks {sorted(needed - declared)}'
     known = set(ROSDEP_KEYS.values()) | OWN

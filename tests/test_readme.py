@@ -8,12 +8,16 @@ import argparse
 import ast
 import re
 import sys
+from collections.abc import Iterable
 from importlib import import_module
 from pathlib import Path
+from types import ModuleType
+from typing import Any
 
 import pytest
 
 from human_model.tables import read_table
+from lifting_messages.topics import Quality, Topic
 
 ROOT = Path(__file__).resolve().parents[1]
 SOURCES = ROOT / 'ros_ws' / 'src'
@@ -39,18 +43,6 @@ DOCUMENTS = sorted(
         *SOURCES.glob('*/*.md'),
     )
 )
-QUALITIES = {
-    'PLATES': 'plates',
-    'FRAMES': 'frames',
-    'LATCHED': 'latched',
-    'RESULTS': 'results',
-    'VIEW': 'view',
-    'TRANSFORMS': 'transforms',
-}
-#: Values of the variable in a topic's name.
-VARIABLES = {'side': ('right', 'left')}
-
-Endpoint = tuple[str, str]
 
 
 def alternatives(name: str) -> list[str]:
@@ -61,76 +53,14 @@ def alternatives(name: str) -> list[str]:
     return [match[1] + word + match[3] for word in match[2].split(',')]
 
 
-def topic_names(node: ast.expr, assigned: dict[str, ast.expr], values: object) -> list[str]:
-    """Return the topics an expression stands for; variables as in VARIABLES.
-
-    Tables of the node's module are looked up in `values`, the imported module.
-    """
-    if isinstance(node, ast.Name):
-        node = assigned[node.id]
-    if isinstance(node, ast.Constant):
-        return [str(node.value)]
-    if isinstance(node, ast.Subscript):
-        assert isinstance(node.value, ast.Name), ast.dump(node)
-        keys = [node.slice.value] if isinstance(node.slice, ast.Constant) else []
-        if isinstance(node.slice, ast.Name):
-            keys = list(VARIABLES[node.slice.id])
-        assert keys, ast.dump(node)
-        return [getattr(values, node.value.id)[key] for key in keys]
-    assert isinstance(node, ast.JoinedStr), ast.dump(node)
-    names = ['']
-    for part in node.values:
-        if isinstance(part, ast.Constant):
-            names = [name + str(part.value) for name in names]
-        else:
-            assert isinstance(part, ast.FormattedValue) and isinstance(part.value, ast.Name)
-            names = [name + value for name in names for value in VARIABLES[part.value.id]]
-    return names
+def topics_of(package: str) -> ModuleType:
+    """Return the module with the declared topics of a package."""
+    return import_module(f'{package}.topics')
 
 
-def full_types(tree: ast.Module) -> dict[str, str]:
-    """Return message, service and action types by the name they are imported under."""
-    return {
-        alias.asname or alias.name: f'{node.module.rpartition(".")[0]}/{alias.name}'
-        for node in ast.walk(tree)
-        if isinstance(node, ast.ImportFrom)
-        and node.module
-        and node.module.endswith(('.msg', '.srv', '.action'))
-        for alias in node.names
-    }
-
-
-def endpoints(package: str, methods: tuple[str, ...]) -> dict[str, Endpoint]:
-    """Return type and quality of service by topic of what a node's source opens."""
-    source = (SOURCES / package / package / f'{package}_node.py').read_text(encoding='utf-8')
-    tree = ast.parse(source)
-    module = import_module(f'{package}.{package}_node')
-    types = full_types(tree)
-    assigned = {
-        target.id: node.value
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Assign)
-        for target in node.targets
-        if isinstance(target, ast.Name)
-    }
-    found = {}
-    for node in ast.walk(tree):
-        if not (
-            isinstance(node, ast.Call)
-            and isinstance(node.func, ast.Attribute)
-            and node.func.attr in methods
-        ):
-            continue
-        kind = node.args[0]
-        quality = [
-            argument.attr
-            for argument in node.args
-            if isinstance(argument, ast.Attribute) and argument.attr in QUALITIES
-        ]
-        assert isinstance(kind, ast.Name) and len(quality) == 1, ast.dump(node)
-        for name in topic_names(node.args[1], assigned, module):
-            found[name] = (types[kind.id], QUALITIES[quality[0]])
-    return found
+def declared(topics: Iterable[Topic]) -> dict[str, tuple[str, str]]:
+    """Return type and quality of service by topic."""
+    return {topic.name: (topic.type, topic.quality.name.lower()) for topic in topics}
 
 
 def documented() -> dict[str, tuple[str, str, str]]:
@@ -145,26 +75,90 @@ def documented() -> dict[str, tuple[str, str, str]]:
     }
 
 
-def test_topics_table_is_what_the_nodes_publish() -> None:
+def test_topics_table_lists_the_outputs_of_the_packages() -> None:
     published = {
         name: (*endpoint, package)
         for package in NODES
-        for name, endpoint in endpoints(package, ('advertise',)).items()
+        for name, endpoint in declared(topics_of(package).OUTPUTS).items()
     }
     assert {name: row for name, row in documented().items() if row[2] != 'bag'} == published
 
 
 @pytest.mark.parametrize('package', NODES)
-def test_what_a_node_reads_is_published_with_that_type(package: str) -> None:
+def test_an_input_is_published_with_its_type_and_quality(package: str) -> None:
     table = documented()
-    read = endpoints(package, ('subscribe', 'create_subscription'))
-    assert read, 'the node reads nothing'
+    read = declared(topics_of(package).INPUTS)
     assert read == {name: table[name][:2] for name in read}
 
 
-def test_everything_from_the_bag_is_read_by_some_node() -> None:
-    read = {name for package in NODES for name in endpoints(package, ('subscribe',))}
+def test_each_topic_of_a_recording_is_the_input_of_a_package() -> None:
+    read = {topic.name for package in NODES for topic in topics_of(package).INPUTS}
     assert {name for name, row in documented().items() if row[2] == 'bag'} <= read
+
+
+@pytest.mark.parametrize('package', NODES)
+def test_a_station_has_a_handler_of_each_input_and_a_node(package: str) -> None:
+    node = import_module(f'{package}.{package}_node')
+    (kind,) = {
+        found.STATION
+        for found in vars(node).values()
+        if isinstance(found, type) and found.__module__ == node.__name__
+    }
+    assert (package, topics_of(package).INPUTS) == (kind.PACKAGE, kind.INPUTS)
+    assert set(kind().handlers) == {topic.name for topic in kind.INPUTS}
+
+
+def docs_module(name: str) -> Any:
+    """Import a script of docs/."""
+    sys.path.insert(0, str(ROOT / 'docs'))
+    try:
+        return __import__(name)
+    finally:
+        sys.path.pop(0)
+
+
+def drawn_flows() -> dict[tuple[str, str], set[str]]:
+    """Return the topics on the arrows of the data flow figure, by their ends."""
+    flows: dict[tuple[str, str], set[str]] = {}
+    for label in docs_module('data_flow').LABELS:
+        if label.flow is not None:
+            words = ' '.join(label.lines).replace(' (live)', '')
+            names = re.findall(r'(?:[^\s,{]|{[^}]*})+', words)
+            flows.setdefault(label.flow, set()).update(
+                name for braces in names for name in alternatives(braces)
+            )
+    return flows
+
+
+def test_arrows_of_the_data_flow_are_the_declared_topics() -> None:
+    names = {
+        package: [
+            {topic.name for topic in topics}
+            for topics in (topics_of(package).INPUTS, topics_of(package).OUTPUTS)
+        ]
+        for package in NODES
+    }
+    computation = [package for package in NODES if package != 'lifting_visualization']
+    flows = {}
+    for package, (inputs, outputs) in names.items():
+        read = {other: names[other][0] & outputs for other in computation}
+        flows.update({(package, other): found for other, found in read.items() if found})
+        flows[package, ''] = outputs.difference(*read.values())
+        if package == 'motion_tracker':
+            flows['', package] = inputs - {'subject', 'task'}
+    assert drawn_flows() == flows
+
+
+def full_types(tree: ast.Module) -> dict[str, str]:
+    """Return service and action types by the name they are imported under."""
+    return {
+        alias.asname or alias.name: f'{node.module.rpartition(".")[0]}/{alias.name}'
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom)
+        and node.module
+        and node.module.endswith(('.srv', '.action'))
+        for alias in node.names
+    }
 
 
 def served(package: str) -> dict[str, str]:
@@ -201,12 +195,10 @@ def test_services_table_is_what_the_nodes_serve() -> None:
 
 
 @pytest.mark.parametrize('name', ['docs/topics.md', 'docs/architecture.md'])
-def test_depths_of_the_queues_are_those_of_the_nodes(name: str) -> None:
-    from lifting_node import qos
-
+def test_depths_of_the_queues_are_the_declared_ones(name: str) -> None:
     text = (ROOT / name).read_text(encoding='utf-8').replace(' 000', '000')
-    for depth in (qos.PLATE_DEPTH, qos.FRAME_DEPTH, qos.LIFT_DEPTH):
-        assert re.search(rf'\b{depth}\b', text), f'{name} does not name {depth}'
+    for quality in Quality:
+        assert re.search(rf'\b{quality.depth}\b', text), f'{name} does not name {quality.depth}'
 
 
 def make_targets() -> set[str]:
@@ -284,15 +276,6 @@ def test_every_document_is_reached_from_the_readme() -> None:
             if goal not in reached and goal.exists():
                 new.append(goal)
     assert [str(path.relative_to(ROOT)) for path in DOCUMENTS if path not in reached] == []
-
-
-def docs_module(name: str) -> object:
-    """Import a script of docs/."""
-    sys.path.insert(0, str(ROOT / 'docs'))
-    try:
-        return __import__(name)
-    finally:
-        sys.path.pop(0)
 
 
 def test_parameters_page_is_up_to_date() -> None:

@@ -75,7 +75,15 @@ def test_package_imports_only_what_it_may(package: str) -> None:
     ],
 )
 def test_cores_import_no_ros(folder: str) -> None:
-    files = list((SOURCES / folder).rglob('*.py'))
+    assert_no_ros(list((SOURCES / folder).rglob('*.py')))
+
+
+def test_stations_import_no_ros() -> None:
+    assert_no_ros([*SOURCES.glob('*/*/station.py'), *SOURCES.glob('*/*/topics.py')])
+
+
+def assert_no_ros(files: list[Path]) -> None:
+    """Assert that there are files, and that none imports a package of ROS or of its messages."""
     assert files
     for path in files:
         wrong = {name for name in imported(path) if name in ROS or name.endswith('_msgs')}

@@ -104,7 +104,7 @@ class Station:
                 duration_hours=1.0,
             ),
         )
-        self.until(lambda: self.node.monitor.assignment is not None, 'configuration')
+        self.until(lambda: self.node.station.monitor.assignment is not None, 'configuration')
 
     def send(self, topic, message):
         """Publish once there is a reader."""

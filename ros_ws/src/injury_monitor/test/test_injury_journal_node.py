@@ -41,7 +41,9 @@ def test_a_known_alarm_is_not_announced_by_the_next_process(tmp_path, new_statio
         try:
             station.bring_up()
             station.live(100.0, [7000.0] * 50)
-            station.until(lambda s=station: s.node.monitor.counts['spine_load'].used == 50, run)
+            station.until(
+                lambda s=station: s.node.station.monitor.counts['spine_load'].used == 50, run
+            )
             station.until(lambda s=station, n=announced: len(s.alarms) >= n, f'{run} alarms')
             assert len(station.alarms) == announced
         finally:
@@ -87,13 +89,13 @@ def test_second_monitor_on_one_journal_is_not_configured(station, tmp_path):
 def test_alarms_go_out_while_the_journal_cannot_be_written(station, tmp_path):
     station.node.values['journal'] = str(tmp_path / 'alarms.db')
     station.bring_up()
-    database = station.node._journal._database
+    database = station.node.station._journal._database
     database.pragma('max_page_count', database.pragma('page_count'))
-    station.node._journal._waiting += FILLER
+    station.node.station._journal._waiting += FILLER
     station.live(100.0, [7000.0] * 50)
     station.until(lambda: len(station.alarms) == 2, 'alarms without a journal')
     assert [alarm.unjournaled for alarm in station.alarms] == [True, True]
-    assert 'full' in station.node.last_error
+    assert 'full' in station.node.station.last_error
     request = AcknowledgeAlarm.Request(alarm_id=HIGH, operator_id='panel 1')
     assert station.call(AcknowledgeAlarm, 'acknowledge_alarm', request).error_code == 0
     station.until(lambda: station.states[-1].unjournaled == len(FILLER) + 3, 'count of events')
@@ -101,7 +103,7 @@ def test_alarms_go_out_while_the_journal_cannot_be_written(station, tmp_path):
     request = AcknowledgeAlarm.Request(alarm_id=HIGH_HIGH, operator_id='panel 1')
     assert station.call(AcknowledgeAlarm, 'acknowledge_alarm', request).error_code == 0
     station.until(lambda: station.states[-1].unjournaled == 0, 'events written later')
-    assert station.node._journal.verify().rows == len(FILLER) + 4
+    assert station.node.station._journal.verify().rows == len(FILLER) + 4
 
 
 def test_operator_commands_need_an_operator_and_an_active_monitor(station):
@@ -114,4 +116,4 @@ def test_operator_commands_need_an_operator_and_an_active_monitor(station):
     assert station.transition(Transition.TRANSITION_DEACTIVATE)
     answer = station.call(*call, AcknowledgeAlarm.Request(alarm_id=HIGH, operator_id='panel'))
     assert answer.error_code == AcknowledgeAlarm.Response.NOT_ACTIVE
-    assert station.node.monitor.states()[HIGH].name == 'UNACKNOWLEDGED_ACTIVE'
+    assert station.node.station.monitor.states()[HIGH].name == 'UNACKNOWLEDGED_ACTIVE'

@@ -132,7 +132,9 @@ def test_lift_is_assessed_once_with_both_parts(station):
     assert result.activation_index == pytest.approx(0.2)
     assert result.lifting_index > 0.0
     send_analysis(station, SpineLoad.PREDICTED, 2400.0)
-    station.until(lambda: station.node.counts['late parts of assessed lifts'] == 3, 'late parts')
+    station.until(
+        lambda: station.node.station.counts['late parts of assessed lifts'] == 3, 'late parts'
+    )
     assert len(station.assessments) == 1
     assert station.alarms == []  # whole lifts are assessed, alarms come from the live stream
 
@@ -172,31 +174,33 @@ def test_bad_messages_are_counted_and_the_node_goes_on(station):
             status=[0],
         ),
     )
-    station.until(lambda: station.node.counts['errors'] == 1, 'first error')
-    assert 'SpineLoad.compression' in station.node.last_error
+    station.until(lambda: station.node.station.counts['errors'] == 1, 'first error')
+    assert 'SpineLoad.compression' in station.node.station.last_error
     station.send('task', Task(task_id='bad', coupling=Task.COUPLING_GOOD, box_mass=-1.0))
-    station.until(lambda: station.node.counts['errors'] == 2, 'second error')
-    assert 'box_mass' in station.node.last_error
+    station.until(lambda: station.node.station.counts['errors'] == 2, 'second error')
+    assert 'box_mass' in station.node.station.last_error
     torques = JointTorques(source=JointTorques.LIVE, joint_names='knee', torque=[1.0])
     station.send('joint_torques', serialize_message(torques).replace(b'knee', b'\xff' * 4))
-    station.until(lambda: station.node.counts['errors'] == 3, 'third error')
-    assert 'JointTorques' in station.node.last_error
+    station.until(lambda: station.node.station.counts['errors'] == 3, 'third error')
+    assert 'JointTorques' in station.node.station.last_error
     station.live(0.0, [7000.0] * 50, status=302)
     station.live(10.0, [7000.0] * 50)
     station.until(lambda: len(station.alarms) == 2, 'alarms from good samples')
-    assert station.node.monitor.counts['spine_load'].unsolved == 50
+    assert station.node.station.monitor.counts['spine_load'].unsolved == 50
 
 
 def test_node_can_be_cleaned_up_and_configured_again(station):
     station.bring_up()
     assert station.transition(Transition.TRANSITION_DEACTIVATE)
     station.live(10.0, [7000.0] * 50)
-    station.until(lambda: station.node.counts['spine_load'] == 5, 'samples while not active')
+    station.until(
+        lambda: station.node.station.counts['samples while not active'] == 5, 'dropped samples'
+    )
     assert station.transition(Transition.TRANSITION_CLEANUP)
     assert station.transition(Transition.TRANSITION_CONFIGURE)
     assert station.transition(Transition.TRANSITION_ACTIVATE)
     # Person and task are latched: the new subscriptions get them again.
-    station.until(lambda: station.node.monitor.assignment is not None, 'configuration')
+    station.until(lambda: station.node.station.monitor.assignment is not None, 'configuration')
     assert station.alarms == []
     station.live(20.0, [7000.0] * 50)
     station.until(lambda: len(station.alarms) == 2, 'alarms after the second configuration')

@@ -115,7 +115,7 @@ def test_lift_that_came_before_its_subject_is_predicted_as_by_the_core(
     result = outcome(7.0)
     station.publishers['lift'].publish(encode(lift_message(result.lift, subject)))
     station.publishers['task'].publish(task_message(7.0))
-    station.until(lambda: station.node.counts['task'], 'task')
+    station.until(lambda: station.node.station.counts['task'], 'task')
     assert not station.predicted
     station.publishers['subject'].publish(encode(subject_to_msg(subject, 0.0, '', 'test')))
     station.until(lambda: station.comparisons and station.trajectories, 'comparison')
@@ -135,8 +135,8 @@ def test_bad_input_is_reported_and_the_node_goes_on(station: Station, outcome, s
     grams = subject_to_msg(subject, 0.0, '', 'test')
     grams.mass = 63500.0
     station.publishers['subject'].publish(encode(grams))
-    station.until(lambda: station.node.counts['errors'] == 1, 'refusal of the subject')
-    assert 'subject.mass' in station.node.last_error
+    station.until(lambda: station.node.station.counts['errors'] == 1, 'refusal of the subject')
+    assert 'subject.mass' in station.node.station.last_error
     station.publishers['subject'].publish(encode(good))
     station.publishers['task'].publish(task_message(0.0))
     points = lift.motion.points.copy()

@@ -27,8 +27,8 @@ from std_srvs.srv import SetBool, Trigger
 from lifting_cli.graph import Graph
 from lifting_cli.graph_errors import SessionError
 from lifting_cli.interruption import SignalMask
-from lifting_cli.live_state import FOLLOWED, LiveState
-from lifting_cli.live_view import LiveView
+from lifting_cli.live.state import FOLLOWED, LiveState
+from lifting_cli.live.view import LiveView
 from lifting_cli.node_process import (
     NodeProcess,
     discovery,
@@ -37,35 +37,10 @@ from lifting_cli.node_process import (
     stop_all,
 )
 from lifting_cli.recording_summary import NO_LIFT, BagSummary, gauge_limits, summarise
+from lifting_cli.topics import RESULT_TOPICS, TOPICS, VISUALIZATION_TOPICS
 from lifting_cli.transport.qos import message_class
 from lifting_messages.message_types import full_name
 from lifting_node import qos
-
-#: Topics of the results file: the recording's description and everything the graph says of it.
-RESULT_TOPICS = (
-    'subject',
-    'task',
-    'joint_states',
-    'lift_event',
-    'measured_lift',
-    'predicted_lift',
-    'predicted_lift/joint_trajectory',
-    'lift_comparison',
-    'muscle_analysis',
-    'spine_load',
-    'l5_s1/reaction',
-    'joint_reactions',
-    'joint_torques',
-    'risk_assessment',
-    'alarms',
-)
-
-#: What the pictures are made of, recorded where it is asked for.
-VISUALIZATION_TOPICS = ('robot_description', 'visualization', '/tf', '/tf_static')
-
-
-#: Topics of the results that a graph may offer once a frame; the rest comes once a lift.
-_QOS = {'subject': qos.LATCHED, 'task': qos.LATCHED, 'spine_load': qos.FRAMES}
 
 #: Time [s] that closing this process's own node may take.
 CLOSING = 10.0
@@ -261,10 +236,9 @@ class _Session:
         self._clients: dict[str, Client] = {}
         # A server drops the answer to a client that it has not heard of yet: known from the start.
         self._client(Trigger, 'motion_tracker/flush')
-        for topic, name in FOLLOWED.items():
-            profile = _QOS.get(topic, qos.RESULTS)
-            kind = message_class(full_name(name))
-            node.create_subscription(kind, topic, self._take, profile)
+        for topic in (TOPICS[name] for name in FOLLOWED):
+            kind = message_class(full_name(topic.type))
+            node.create_subscription(kind, topic.name, self._take, qos.profile(topic.quality))
 
     def _take(self, message: Any) -> None:
         self._last = time.monotonic()

@@ -7,7 +7,7 @@ import math
 import pytest
 from lifting_interfaces.msg import AlarmEvent, LiftEvent, PredictedLift, RiskAssessment, SpineLoad
 
-from lifting_cli.live_state import Kind, LiveState
+from lifting_cli.live.state import Kind, LiveState
 from lifting_messages.stamps import to_stamp
 
 START = 1_000.0

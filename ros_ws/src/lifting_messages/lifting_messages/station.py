@@ -7,9 +7,9 @@ A node, the offline run and the tests drive the same stations, so they give the 
 
 from __future__ import annotations
 
-from abc import ABC
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any, ClassVar, Protocol, TypeAlias
 
 from human_model.exceptions import LiftingError
@@ -48,7 +48,7 @@ class NoLog:
         """Do nothing."""
 
 
-class Station(ABC):
+class Station:
     """Messages of the input topics to messages of the output topics.
 
     A subclass sets `PACKAGE`, `INPUTS` and `OUTPUTS` and fills `handlers`. Results of whole lifts
@@ -97,6 +97,9 @@ class Station(ABC):
         self.has_subscribers: Callable[[str], bool] = lambda _: True
         self.has_publishers: Callable[[str], bool] = lambda _: False
 
+    def warm_up(self) -> None:
+        """Load what the first messages need: models and compiled functions."""
+
     def receive(self, topic: str, message: Message) -> Iterator[Output]:
         """Take a message of an input topic; yield the messages of the output topics.
 
@@ -112,16 +115,28 @@ class Station(ABC):
             raise TopicError(self.PACKAGE, topic)
         return handler(message)
 
-    def receive_guarded(self, topic: str, message: Message) -> Iterator[Output]:
-        """Do the same, but report and count refused messages instead of raising.
+    @contextmanager
+    def guard(self, topic: str) -> Iterator[None]:
+        """Count a message; report the exception of refused input instead of raising it.
 
         Any other exception is a defect and raised.
         """
         self.counts[topic] += 1
         try:
-            yield from self.receive(topic, message)
+            yield
         except LiftingError as error:
             self.report_error(f'{topic}: {error}')
+
+    def start(self) -> Iterator[Output]:
+        """Yield the messages for subscribers when the node becomes active."""
+        return iter(())
+
+    def tick(self) -> Iterator[Output]:
+        """Yield the messages that the clock of the machine causes; called once a second."""
+        return iter(())
+
+    def close(self) -> None:
+        """Close the files."""
 
     @property
     def pending(self) -> bool:

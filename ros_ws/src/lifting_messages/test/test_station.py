@@ -55,15 +55,19 @@ def test_receive_raises_what_the_package_refuses():
 def test_guarded_input_is_counted_and_an_error_logged_once_in_a_row():
     log = Lines()
     station = Doubler(log)
-    outputs = [o for number in (1, -1, -1, 2) for o in station.receive_guarded('task', number)]
+    outputs = []
+    for number in (1, -1, -1, 2):
+        with station.guard('task'):
+            outputs += station.receive('task', number)
     assert outputs == [('double', 2), ('double', -2), ('double', -2), ('double', 4)]
     assert station.counts == {'task': 4, 'errors': 2}
     assert log == ['task: negative'] == [station.last_error]
 
 
 def test_an_unknown_exception_is_a_defect():
-    with pytest.raises(TypeError):
-        list(Doubler().receive_guarded('task', None))
+    station = Doubler()
+    with pytest.raises(TypeError), station.guard('task'):
+        list(station.receive('task', None))
 
 
 def test_finish_works_until_nothing_is_pending():

@@ -246,7 +246,7 @@ def test_tf_can_be_left_to_robot_state_publisher(station, woman, motion_at):
 def test_bad_input_is_counted_and_the_node_goes_on(station, woman, motion_at):
     station.send('subject', subject_to_msg(woman, 1.0, '', ''))
     station.send('body_motion', BodyMotion(skeleton='3d_40dof'))
-    station.until(lambda: station.node.counts['errors'] == 1, 'the error')
+    station.until(lambda: station.node.station.counts['errors'] == 1, 'the error')
     station.send('body_motion', motion_message(motion_at(2.0)))
     station.until(lambda: ('person', 0) in station.markers, 'a picture')
 
@@ -257,7 +257,9 @@ def test_silent_until_active(woman, motion_at):
         station.node.trigger_configure()
         station.send('subject', subject_to_msg(woman, 1.0, '', ''))
         station.send('body_motion', motion_message(motion_at(2.0)))
-        station.until(lambda: station.node.counts['samples while not active'] == 1, 'the sample')
+        station.until(
+            lambda: station.node.station.counts['samples while not active'] == 1, 'the sample'
+        )
         station.spin(0.2)
         assert not (station.markers or station.transforms or station.urdf)
         station.node.trigger_activate()

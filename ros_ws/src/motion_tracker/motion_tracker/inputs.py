@@ -11,30 +11,7 @@ import numpy as np
 from human_model.typing import Array
 from lifting_messages import Message
 from lifting_messages.names import split
-from lifting_messages.plate_blocks import block_samples
 from motion_tracker.core.exceptions import TrackerError
-from motion_tracker.core.tracked import Output
-from motion_tracker.core.tracker import MotionTracker
-
-
-def push(tracker: MotionTracker, topic: str, message: Message) -> list[Output]:
-    """Pass a sample of an input topic to a tracker; return what it gives out.
-
-    Raises
-    ------
-    TrackerError
-        If the tracker refuses the sample, or the topic is none of its inputs.
-    """
-    match topic.split('/'):
-        case ['markers']:
-            return tracker.push_markers(*markers_from_msg(message))
-        case ['box', 'pose']:
-            return tracker.push_box(*box_from_msg(message))
-        case ['force_plates', side, 'wrench']:
-            return tracker.push_wrench(side, *wrench_from_msg(message))
-        case ['force_plates', side, 'wrench_block']:
-            return tracker.push_wrenches(side, *block_samples(message))
-    raise TrackerError(f'{topic}: the tracker has no such input')
 
 
 def markers_from_msg(message: Message) -> tuple[float, tuple[str, ...], Array]:

@@ -27,6 +27,7 @@ from motion_tracker.core.recording_segmenter import LEAP, RecordingSegmenter
 from motion_tracker.core.tracked import DetectedEvent, MeasuredLift, TrackedFrame, TrackerSettings
 from motion_tracker.core.tracked import Output as Tracked
 from motion_tracker.core.tracker import MotionTracker
+from motion_tracker.core.warm_up import warm_up
 
 #: Samples kept until person and task are known: 20 s of two 2500 Hz plates.
 EARLY_SAMPLES: Final = 100_000
@@ -89,16 +90,18 @@ class TrackerStation(Station):
             **{topics.PLATES[side].name: partial(self._on_wrench, side) for side in SIDES},
             **{topics.BLOCKS[side].name: partial(self._on_block, side) for side in SIDES},
         }
+        self.handlers = {
+            topic: partial(self._convert, handler) for topic, handler in self._inputs.items()
+        }
 
     @property
     def waiting(self) -> int:
         """Number of samples that wait for person and task."""
         return len(self._early)
 
-    def receive(self, topic: str, message: Message) -> Iterator[Output]:
-        """Take a message; yield the messages of its results."""
-        for output in self.track(topic, message):
-            yield from self._messages(output)
+    def warm_up(self) -> None:
+        """Load the compiled functions."""
+        warm_up()
 
     def flush(self) -> Iterator[Output]:
         """End the recording: process the frames that wait."""
@@ -143,6 +146,12 @@ class TrackerStation(Station):
         yield from self._end_recording()
         self._task = box_mass, box_size
         yield from self._feed_early()
+
+    def _convert(
+        self, handler: Callable[[Message], Iterator[Tracked]], message: Message
+    ) -> Iterator[Output]:
+        for output in handler(message):
+            yield from self._messages(output)
 
     def _on_subject(self, message: Message) -> Iterator[Tracked]:
         return self.enter_subject(subject_from_msg(message), message.marker_set)

@@ -24,8 +24,8 @@ BLOCKS: Final = {
 #: Inputs with samples of a recording.
 STREAMS: Final = (MARKERS, BOX, *PLATES.values(), *BLOCKS.values())
 
-INPUTS: Final = (SUBJECT, TASK, *STREAMS)
-OUTPUTS: Final = (
+INPUTS: Final[tuple[Topic, ...]] = (SUBJECT, TASK, *STREAMS)
+OUTPUTS: Final[tuple[Topic, ...]] = (
     Topic('body_motion', 'lifting_interfaces/BodyMotion', Quality.FRAMES, recorded=False),
     Topic('joint_states', 'sensor_msgs/JointState', Quality.FRAMES),
     Topic('lift_event', 'lifting_interfaces/LiftEvent', Quality.RESULTS),

@@ -138,11 +138,11 @@ def test_a_recording_over_topics_gives_what_the_core_gives(station, recording):
     for topic, message in recording:
         station.publishers[topic].publish(message)
         station.executor.spin_once(timeout_sec=0.0)
-    station.until(lambda: station.node.counts['markers'] == markers, 'all marker frames')
+    station.until(lambda: station.node.station.counts['markers'] == markers, 'all marker frames')
     plates = sum(topic.endswith('wrench') for topic, _ in recording)
     station.until(
         lambda: (
-            sum(n for topic, n in station.node.counts.items() if topic.endswith('wrench'))
+            sum(n for topic, n in station.node.station.counts.items() if topic.endswith('wrench'))
             == plates
         ),
         'all plate samples',
@@ -183,7 +183,7 @@ def test_a_recording_over_topics_gives_what_the_core_gives(station, recording):
         assert message.point.y == pytest.approx(
             share @ frame.motion.centre_of_pressure[0, :, 1], abs=1e-9
         )
-    assert station.node.counts['errors'] == 0
+    assert station.node.station.counts['errors'] == 0
 
 
 def test_flush_without_a_recording_says_so(station):
@@ -198,11 +198,11 @@ def test_bad_frames_are_reported_and_the_node_goes_on(station, recording):
     for topic, message in recording[:2]:
         station.publishers[topic].publish(message)
     station.until(
-        lambda: station.node.counts['task'] == 1 == station.node.counts['subject'],
+        lambda: station.node.station.counts['task'] == 1 == station.node.station.counts['subject'],
         'person and task',
     )
     frame = next(message for topic, message in recording if topic == 'markers')
     frame.positions = [1000.0 * value for value in frame.positions]
     station.publishers['markers'].publish(frame)
-    station.until(lambda: station.node.counts['errors'] == 1, 'report')
-    assert 'millimetres' in station.node.last_error
+    station.until(lambda: station.node.station.counts['errors'] == 1, 'report')
+    assert 'millimetres' in station.node.station.last_error

@@ -8,14 +8,17 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from human_model.exceptions import LiftingError
 from human_model.motion import BodyMotion
 from muscle_analyzer.core.loads.analysis import JoinedParts, MuscleAnalysis
 from muscle_analyzer.core.loads.analyzer import MuscleAnalyzer
+
+T = TypeVar('T')
 
 SAMPLES: Final = 2
 """Samples that are analysed in one step: together they take hardly longer than one."""
@@ -42,69 +45,59 @@ class WaitingLift:
     tracker_status: NDArray[np.int64]
 
 
-class LiftQueue:
+class LiftQueue(Generic[T]):
     """Analyses lifts in the order of their arrival.
 
     Parameters
     ----------
-    analyzer
-        Of the node.
-    done
-        Takes a lift and its analysis and hands them over in steps, as their messages are large.
+    results
+        Yields the results of a lift's analysis one by one, as their messages are large.
     failed
         Takes a lift and the error that ended its analysis.
-    errors
-        Errors that mean bad input; others are defects and go on to the caller.
     """
 
     def __init__(
         self,
-        analyzer: MuscleAnalyzer,
-        done: Callable[[WaitingLift, MuscleAnalysis], Iterator[None]],
-        failed: Callable[[WaitingLift, Exception], None],
-        errors: tuple[type[Exception], ...],
+        results: Callable[[WaitingLift, MuscleAnalyzer, MuscleAnalysis], Iterator[T]],
+        failed: Callable[[WaitingLift, LiftingError], None],
     ) -> None:
-        self.analyzer = analyzer
-        self._done = done
+        self._results = results
         self._failed = failed
-        self._errors = errors
-        self._lifts: deque[tuple[WaitingLift, Iterator[None]]] = deque()
+        self._lifts: deque[tuple[WaitingLift, Iterator[T | None]]] = deque()
 
     def __len__(self) -> int:
         """Return the number of lifts that are not finished."""
         return len(self._lifts)
 
-    def add(self, lift: WaitingLift) -> None:
-        """Take a lift."""
-        self._lifts.append((lift, self._steps(lift)))
+    def add(self, lift: WaitingLift, analyzer: MuscleAnalyzer) -> None:
+        """Queue a lift for analysis by the analyzer of its person."""
+        self._lifts.append((lift, self._steps(lift, analyzer)))
 
-    def work(self, duration: float) -> None:
-        """Go on for about so long [s], at least by one step."""
+    def work(self, duration: float) -> Iterator[T]:
+        """Continue for about this time [s], at least by one step; yield results."""
         end = time.perf_counter() + duration
         while self._lifts:
             lift, steps = self._lifts[0]
             try:
-                next(steps)
+                result = next(steps)
             except StopIteration:
                 self._lifts.popleft()
-            except self._errors as error:
+            except LiftingError as error:
                 self._lifts.popleft()
                 self._failed(lift, error)
+            else:
+                if result is not None:
+                    yield result
             if time.perf_counter() > end:
                 return
 
-    def finish(self) -> None:
-        """Work off everything at once."""
-        while self._lifts:
-            self.work(float('inf'))
-
-    def _steps(self, lift: WaitingLift) -> Iterator[None]:
-        """Analyse a lift and hand it over."""
+    def _steps(self, lift: WaitingLift, analyzer: MuscleAnalyzer) -> Iterator[T | None]:
+        """Analyse a lift, then yield its results; None ends a step without a result."""
         parts = JoinedParts(len(lift.motion))
         for k in range(0, len(lift.motion), SAMPLES):
             some = slice(k, k + SAMPLES)
             parts.add(
-                self.analyzer.analyze(
+                analyzer.analyze(
                     lift.motion[some],
                     lift.lift_id,
                     lift.source,
@@ -112,5 +105,5 @@ class LiftQueue:
                     continued=k > 0,
                 )
             )
-            yield
-        yield from self._done(lift, parts.whole())
+            yield None
+        yield from self._results(lift, analyzer, parts.whole())

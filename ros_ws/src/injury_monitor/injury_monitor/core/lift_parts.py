@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from human_model.typing import BoolArray
@@ -102,18 +101,25 @@ class LiftCollector:
             return None
         return self._waiting.setdefault(lift_id, LiftParts(lift_id, now))
 
-    def ready(self, now: float) -> Iterable[LiftParts]:
-        """Take out the lifts that are complete, and those that waited long enough.
+    def any_ready(self, now: float) -> bool:
+        """Return whether a lift is complete or has waited long enough."""
+        return any(self._is_ready(parts, now) for parts in self._waiting.values())
+
+    def take(self, now: float) -> LiftParts:
+        """Take out the first lift that is ready.
 
         A lift whose waiting time is over without a measured spine load cannot be assessed; it is
-        handed out too, so that the caller can say so.
+        taken out too, so that the caller can report it.
+
+        Raises
+        ------
+        StopIteration
+            If no lift is ready.
         """
-        ready = [
-            parts
-            for parts in self._waiting.values()
-            if parts.complete() or now - parts.since >= self.wait
-        ]
-        for parts in ready:
-            del self._waiting[parts.lift_id]
-            self._done.add(parts.lift_id)
-        return ready
+        parts = next(parts for parts in self._waiting.values() if self._is_ready(parts, now))
+        del self._waiting[parts.lift_id]
+        self._done.add(parts.lift_id)
+        return parts
+
+    def _is_ready(self, parts: LiftParts, now: float) -> bool:
+        return parts.complete() or now - parts.since >= self.wait

@@ -6,23 +6,24 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import Final
 
 import numpy as np
 
 from lifting_messages import Message, message_type
 from lifting_messages.stamps import to_seconds
 
-#: Types of the messages the live view follows, by topic.
-FOLLOWED: dict[str, str] = {
-    'subject': 'Subject',
-    'task': 'Task',
-    'lift_event': 'LiftEvent',
-    'predicted_lift': 'PredictedLift',
-    'lift_comparison': 'LiftComparison',
-    'spine_load': 'SpineLoad',
-    'alarms': 'AlarmEvent',
-    'risk_assessment': 'RiskAssessment',
-}
+#: Topics of the live view.
+FOLLOWED: Final = (
+    'subject',
+    'task',
+    'lift_event',
+    'predicted_lift',
+    'lift_comparison',
+    'spine_load',
+    'alarms',
+    'risk_assessment',
+)
 
 _SUBJECT = message_type('Subject')
 _LIFT_EVENT = message_type('LiftEvent')
@@ -129,7 +130,6 @@ class LiveState:
             case 'RiskAssessment':
                 self.lifts_assessed.add(message.lift_id)
                 return [_assessment(message)]
-        return []
         return []
 
     def _lift_event(self, message: Message) -> tuple[str, Kind]:

@@ -13,7 +13,7 @@ from rich.live import Live
 from rich.table import Table
 from rich.text import Text
 
-from lifting_cli.live_state import Kind, Line, LiveState
+from lifting_cli.live.state import Kind, Line, LiveState
 
 _STYLE = {Kind.PLAIN: '', Kind.GOOD: 'green', Kind.WARNING: 'yellow', Kind.ALARM: 'bold red'}
 
