@@ -19,7 +19,8 @@ TABLES = sorted(
 #: A source is a publication with its year, a file, a model, data of others, or a choice of ours.
 CITED = re.compile(
     r'\b(18|19|20)\d\d\b|\.(py|osim|xml|csv|trc)\b|thesis|table \d|OpenSim|full-body model|ANSUR'
-    r'|Millard torque generators|Occupational Biomechanics|Reference Guide|Pose2Sim|Visual3D'
+    r'|Millard torque generators|Occupational Biomechanics|Reference Guide|Vicon|Pose2Sim|Visual3D'
+    r'|OpenCap|marker set plug_in_gait'
     r'|this project|engineering choice'
 )
 READER = SOURCES / 'human_model' / 'human_model' / 'tables.py'

@@ -128,7 +128,7 @@ class BodyMotion:
         time = _frozen('time', self.time)
         if time.ndim != 1 or time.size < 1:
             raise MotionError(f'motion.time: shape (n,), n >= 1 is needed, got {time.shape}')
-        if not _all_finite(time):
+        if not all_finite(time):
             raise MotionError('motion.time: not finite')
         if time.size > 1 and not np.all(np.diff(time) > 0):
             worst = int(np.argmin(np.diff(time)))
@@ -141,7 +141,7 @@ class BodyMotion:
             array = arrays[name] = _frozen(name, getattr(self, name))
             if array.shape != shape:
                 raise MotionError(f'motion.{name}: shape {shape} is needed, got {array.shape}')
-            if name not in _MAY_BE_NAN and not _all_finite(array):
+            if name not in _MAY_BE_NAN and not all_finite(array):
                 sample = int(np.argwhere(~np.isfinite(array))[0][0])
                 raise MotionError(f'motion.{name}: not finite in sample {sample}')
         length = _worst_length(arrays['frames'])
@@ -346,8 +346,8 @@ def _frozen(name: str, value: npt.ArrayLike) -> Array:
     return array
 
 
-def _all_finite(array: Array) -> bool:
-    """Whether no value is NaN or infinite.
+def all_finite(array: Array) -> bool:
+    """Return whether no value is NaN or infinite.
 
     A sum of squares is finite unless a value is not, or beyond 1e154: only then each is looked
     at. Of a live sample this takes a quarter of the time of looking at each.

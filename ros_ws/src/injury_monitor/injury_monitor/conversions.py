@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from human_model.task import Coupling, Work
-from human_model.typing import BoolArray
+from human_model.typing import Array, BoolArray
 from injury_monitor.core.alarm_event import AlarmEvent
 from injury_monitor.core.assessment import RiskAssessment
 from injury_monitor.core.assignment import Assignment
@@ -19,7 +19,6 @@ from injury_monitor.core.lift_parts import MEASURED, PREDICTED, SpineSeries
 from injury_monitor.core.lifting_geometry import LiftEnd
 from injury_monitor.core.loads import ActivationSeries, TorqueSeries
 from injury_monitor.core.rnle_assessment import LiftEnds
-from injury_monitor.core.validation import FloatArray
 from lifting_messages.message_types import Message, make, message_type
 from lifting_messages.names import split
 from lifting_messages.stamps import header, to_seconds, to_stamp
@@ -70,7 +69,7 @@ def assignment_from_msg(subject: Message, task: Message) -> Assignment:
     )
 
 
-def block_clock(message: Message) -> tuple[FloatArray, BoolArray]:
+def block_clock(message: Message) -> tuple[Array, BoolArray]:
     """Return time [s] and solve flag of each sample of a block, both (n,)."""
     start = to_seconds(message.header.stamp)
     time = np.array([start + seconds for seconds in message.time_from_start.tolist()], np.float64)
@@ -84,7 +83,7 @@ def block_clock(message: Message) -> tuple[FloatArray, BoolArray]:
     return time, solved
 
 
-def rows(message: object, field: str, n: int, width: int) -> FloatArray:
+def rows(message: object, field: str, n: int, width: int) -> Array:
     """Return a row-major field as (n, width)."""
     values = np.asarray(getattr(message, field), np.float64)
     if values.size != n * width:
@@ -231,7 +230,7 @@ def assessment_to_msg(result: RiskAssessment, start: float) -> Message:
     )
 
 
-def _torque_index(result: RiskAssessment) -> tuple[tuple[str, ...], FloatArray, FloatArray]:
+def _torque_index(result: RiskAssessment) -> tuple[tuple[str, ...], Array, Array]:
     """Return joints and both peaks, NaN where a source lacks a joint."""
     peaks = [result.torque_index.get(source) for source in (MEASURED, PREDICTED)]
     joints = tuple(

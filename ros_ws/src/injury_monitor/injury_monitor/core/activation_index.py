@@ -18,9 +18,9 @@ from statistics import median
 
 import numpy as np
 
-from human_model.typing import BoolArray
+from human_model.typing import Array, BoolArray
 from injury_monitor.core.exceptions import InvalidInputError
-from injury_monitor.core.validation import FloatArray, array, positive
+from injury_monitor.core.validation import array, positive
 
 DEFAULT_WINDOW = 0.5
 DEFAULT_MAX_GAP = 0.1
@@ -44,13 +44,13 @@ class SlidingMean:
     def __init__(self, window: float = DEFAULT_WINDOW, max_gap: float = DEFAULT_MAX_GAP) -> None:
         self.window = positive('window', window)
         self.max_gap = positive('max_gap', max_gap)
-        self._samples: deque[tuple[float, FloatArray, FloatArray]] = deque()
+        self._samples: deque[tuple[float, Array, Array]] = deque()
 
     def reset(self) -> None:
         """Forget all samples."""
         self._samples.clear()
 
-    def add(self, stamp: float, activation: FloatArray) -> FloatArray | None:
+    def add(self, stamp: float, activation: Array) -> Array | None:
         """Add one sample.
 
         Parameters
@@ -105,8 +105,8 @@ class ActivationIndex:
     """
 
     muscles: tuple[str, ...]
-    index: FloatArray
-    time: FloatArray
+    index: Array
+    time: Array
     window: float
 
     def worst(self) -> tuple[str, float, float]:
@@ -118,9 +118,9 @@ class ActivationIndex:
 
 
 def activation_index(
-    time: FloatArray,
+    time: Array,
     muscles: Sequence[str],
-    activation: FloatArray,
+    activation: Array,
     solved: BoolArray,
     window: float = DEFAULT_WINDOW,
 ) -> ActivationIndex:

@@ -6,10 +6,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from human_model.typing import BoolArray
+from human_model.typing import Array, BoolArray
 from injury_monitor.core.loads import ActivationSeries, LiftLoads, TorqueSeries
 from injury_monitor.core.rnle_assessment import LiftEnds
-from injury_monitor.core.validation import FloatArray, positive
+from injury_monitor.core.validation import positive
 
 MEASURED = 'measured'
 PREDICTED = 'predicted'
@@ -19,9 +19,9 @@ PREDICTED = 'predicted'
 class SpineSeries:
     """L5-S1 load over a lift: time (n,) [s], compression and anterior shear (n,) [N]."""
 
-    time: FloatArray
-    compression: FloatArray
-    anterior_shear: FloatArray
+    time: Array
+    compression: Array
+    anterior_shear: Array
     solved: BoolArray
 
 

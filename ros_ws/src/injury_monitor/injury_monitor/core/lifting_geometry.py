@@ -18,9 +18,10 @@ import numpy as np
 import numpy.typing as npt
 
 from human_model.task import Coupling
+from human_model.typing import Array
 from injury_monitor.core.exceptions import InvalidInputError
 from injury_monitor.core.lifting_equation import LiftingTask
-from injury_monitor.core.validation import FloatArray, array
+from injury_monitor.core.validation import array
 
 
 @dataclass(frozen=True)
@@ -35,8 +36,8 @@ class LiftEnd:
         Right and left ankle joint centre [m].
     """
 
-    grip: FloatArray
-    ankles: FloatArray
+    grip: Array
+    ankles: Array
 
     def __post_init__(self) -> None:
         """Refuse wrong shapes and NaN."""
@@ -47,7 +48,7 @@ class LiftEnd:
             object.__setattr__(self, field, values)
 
 
-def forward_direction(ankles: npt.ArrayLike) -> FloatArray:
+def forward_direction(ankles: npt.ArrayLike) -> Array:
     """Return the horizontal unit vector at right angles to the line between the ankles.
 
     This is the sagittal direction of the neutral body position while the feet stand side by side.
@@ -80,7 +81,7 @@ def forward_direction(ankles: npt.ArrayLike) -> FloatArray:
 def lifting_task(
     end: LiftEnd,
     travel: float,
-    forward: FloatArray,
+    forward: Array,
     lifts_per_minute: float,
     duration_hours: float,
     coupling: Coupling,

@@ -10,12 +10,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from human_model.typing import BoolArray
+from human_model.motion import all_finite
+from human_model.typing import Array, BoolArray
 from injury_monitor.core.exceptions import InvalidInputError
-from injury_monitor.core.validation import FloatArray, all_finite, array
+from injury_monitor.core.validation import array
 
 
-def _series(owner: object, time: FloatArray, solved: BoolArray) -> None:
+def _series(owner: object, time: Array, solved: BoolArray) -> None:
     """Check the clock and the solve flags that every series has."""
     name = type(owner).__name__
     stamps = np.asarray(time, dtype=np.float64)
@@ -62,11 +63,11 @@ class TorqueSeries:
     solved : array of bool (n,)
     """
 
-    time: FloatArray
+    time: Array
     joints: tuple[str, ...]
-    torque: FloatArray
-    lower: FloatArray
-    upper: FloatArray
+    torque: Array
+    lower: Array
+    upper: Array
     solved: BoolArray
 
     def __post_init__(self) -> None:
@@ -96,9 +97,9 @@ class ActivationSeries:
     solved : array of bool (n,)
     """
 
-    time: FloatArray
+    time: Array
     muscles: tuple[str, ...]
-    activation: FloatArray
+    activation: Array
     solved: BoolArray
 
     def __post_init__(self) -> None:
@@ -128,9 +129,9 @@ class LiftLoads:
 
     lift_id: str
     start: float
-    time: FloatArray
-    compression: FloatArray
-    anterior_shear: FloatArray
+    time: Array
+    compression: Array
+    anterior_shear: Array
     solved: BoolArray
     torques: TorqueSeries | None = None
     activations: ActivationSeries | None = None

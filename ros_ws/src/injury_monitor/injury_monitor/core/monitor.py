@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from human_model.motion import all_finite
 from injury_monitor.core.activation_index import DEFAULT_MAX_GAP, DEFAULT_WINDOW, SlidingMean
 from injury_monitor.core.alarm import AlarmState, Trigger
 from injury_monitor.core.alarm_event import AlarmEvent
@@ -29,7 +30,7 @@ from injury_monitor.core.loads import LiftLoads
 from injury_monitor.core.rnle_assessment import LiftEnds
 from injury_monitor.core.station_alarm import Sample, StationAlarm
 from injury_monitor.core.torque_index import worst_torque_index
-from injury_monitor.core.validation import all_finite, array, finite, positive
+from injury_monitor.core.validation import array, finite, positive
 
 # Longest shelving [s]: one shift, so that no alarm stays shelved into the next one
 # (engineering choice; ISA-18.2 requires a limit and leaves its length to the plant).

@@ -10,12 +10,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from human_model.typing import BoolArray
+from human_model.typing import Array, BoolArray
 from injury_monitor.core.exceptions import InvalidInputError
-from injury_monitor.core.validation import FloatArray, array
+from injury_monitor.core.validation import array
 
 
-def torque_index(torque: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatArray:
+def torque_index(torque: Array, lower: Array, upper: Array) -> Array:
     """Ratio of joint torque and dynamic joint strength, thesis eq. 4.12.
 
     The strength is the upper bound where the torque is positive and the lower bound where it is
@@ -57,9 +57,7 @@ def torque_index(torque: FloatArray, lower: FloatArray, upper: FloatArray) -> Fl
     return index
 
 
-def worst_torque_index(
-    torque: FloatArray, lower: FloatArray, upper: FloatArray
-) -> tuple[int, float] | None:
+def worst_torque_index(torque: Array, lower: Array, upper: Array) -> tuple[int, float] | None:
     """Find the joint with the largest index in one sample; see :func:`torque_index`.
 
     In plain numbers: for the joints of one body, arithmetic of arrays takes longer to begin than
@@ -111,8 +109,8 @@ class TorqueIndexPeaks:
     """
 
     joints: tuple[str, ...]
-    peak: FloatArray
-    time: FloatArray
+    peak: Array
+    time: Array
 
     def worst(self) -> tuple[str, float, float]:
         """Return joint, index and time of the largest peak; ('', NaN, NaN) if there is none."""
@@ -123,11 +121,11 @@ class TorqueIndexPeaks:
 
 
 def torque_index_peaks(
-    time: FloatArray,
+    time: Array,
     joints: Sequence[str],
-    torque: FloatArray,
-    lower: FloatArray,
-    upper: FloatArray,
+    torque: Array,
+    lower: Array,
+    upper: Array,
     solved: BoolArray,
 ) -> TorqueIndexPeaks:
     """Find the largest torque index of every joint.

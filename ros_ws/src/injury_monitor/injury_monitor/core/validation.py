@@ -8,14 +8,9 @@ import math
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from human_model.typing import Array
 from injury_monitor.core.exceptions import InvalidInputError
-
-FloatArray = npt.NDArray[np.float64]
-
-#: So many values are summed by one thread; more may wait for several, longer than it takes.
-_FEW = 1000
 
 
 def finite(field: str, value: float) -> float:
@@ -42,7 +37,7 @@ def positive(field: str, value: float) -> float:
     return result
 
 
-def array(field: str, value: Any, shape: tuple[int, ...]) -> FloatArray:
+def array(field: str, value: Any, shape: tuple[int, ...]) -> Array:
     """Return ``value`` as an array of the given shape.
 
     Raises
@@ -54,14 +49,3 @@ def array(field: str, value: Any, shape: tuple[int, ...]) -> FloatArray:
     if result.shape != shape:
         raise InvalidInputError(field, result.shape, f'must have the shape {shape}')
     return result
-
-
-def all_finite(values: FloatArray) -> bool:
-    """Return whether no value is NaN or infinite.
-
-    A sum of squares is finite unless a value is not, or beyond 1e154: only then each is looked
-    at, which takes four times as long for a live sample.
-    """
-    if values.size <= _FEW and math.isfinite(np.vdot(values, values)):
-        return True
-    return bool(np.all(np.isfinite(values)))

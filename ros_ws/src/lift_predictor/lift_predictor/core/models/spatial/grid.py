@@ -10,6 +10,7 @@ from typing import Final
 
 import numpy as np
 
+from human_model.constants import SIDES
 from human_model.typing import Array
 from lift_predictor.core.models.spatial.parameters import (
     DEPENDENT,
@@ -24,12 +25,11 @@ from lift_predictor.core.problem.grid import TimeGrid
 N_NODE: Final = 3 * N_SPLINED
 """Node variables: splined coordinates, first and second derivatives by normalised time."""
 
-_SIDES: Final = ('right', 'left')
 TORQUE_CONSTRAINTS: Final = tuple(f'joint torque limit (4.2) of {joint}' for joint in STRONG)
 ANGLE_CONSTRAINTS: Final = tuple(f'joint angle (4.1, 3.15) of {joint}' for joint in DEPENDENT)
 GROUND_CONSTRAINTS: Final = (
     'balance (4.3) between heels and tips of the toes',
-    *(f'vertical ground reaction of the {side} foot' for side in _SIDES),
+    *(f'vertical ground reaction of the {side} foot' for side in SIDES),
 )
 COLLISION_CONSTRAINTS: Final = tuple(
     f'collision (3.10) of the box with the {n}' for n in SPHERE_NAMES
@@ -105,7 +105,7 @@ class SpatialGrid(TimeGrid):
             *(
                 f'{side} hand (3.13) {axis} at the {end}'
                 for end in ('start', 'end')
-                for side in _SIDES
+                for side in SIDES
                 for axis in ('forward', 'left', 'up')
             ),
             *TECHNIQUE_CONSTRAINTS,
