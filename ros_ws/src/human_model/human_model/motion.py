@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The lift monitor authors
 # SPDX-License-Identifier: Apache-2.0
-"""Blocks of body motion and lifts, the data every room exchanges."""
+"""Blocks of body motion and lifts, the data that all packages exchange."""
 
 import json
 import math

@@ -10,7 +10,7 @@ from typing import Any
 class SolveStatus(IntEnum):
     """Outcome of a solver; only ``OK`` marks good data.
 
-    The hundreds say which room: 1xx motion tracker, 2xx lift predictor, 3xx muscle analyzer.
+    The hundreds identify the package: 1xx motion tracker, 2xx lift predictor, 3xx muscle analyzer.
     """
 
     OK = 0
