@@ -106,6 +106,23 @@ def test_a_lift_without_any_solved_sample_has_no_zone():
     assert 'unknown' in result.summary
 
 
+@pytest.mark.parametrize(('left_out', 'words'), [(0, ''), (20, 'at least '), (80, None)])
+def test_a_minority_of_samples_is_no_assessment(left_out, words):
+    """The first samples are not good: the peak is at least that of the others, or not known."""
+    solved = GOOD.copy()
+    solved[:left_out] = False
+    result = assess(loads(2390.0, 796.0, solved=solved))
+    peak = result.criterion('compression_action', 'measured').value
+    if words is None:
+        assert math.isnan(peak)
+        assert result.zone is Zone.UNKNOWN
+        assert any('at least compression 20' in note for note in result.notes)
+        return
+    assert peak == pytest.approx(2390.0, abs=1.0)
+    assert f'Peak L5-S1 compression {words}2390 N' in result.summary
+    assert any('at least as high' in note for note in result.notes) == bool(words)
+
+
 def test_indices_name_joint_and_muscle():
     n = len(TIME)
     torques = TorqueSeries(

@@ -17,6 +17,13 @@ from injury_monitor.core.loads import LiftLoads
 from injury_monitor.core.rnle_assessment import LiftEnds, LiftingAssessment, assess_lifting
 from injury_monitor.core.torque_index import TorqueIndexPeaks, torque_index_peaks
 
+#: Least share of good samples of a lift that is assessed: the majority.
+MAJORITY = 0.5
+
+#: Share of good samples below which peaks are stated as "at least". An engineering choice: what is
+#: left out then lasts longer than a peak of motion filtered at 6 Hz.
+COMPLETE = 0.95
+
 
 @dataclass(frozen=True)
 class Criterion:
@@ -203,7 +210,13 @@ def assess_lift(
         activations,
         lifting,
         zone,
-        _summary(peaks['measured'], zone, more_compression, lifting),
+        _summary(
+            peaks['measured'],
+            zone,
+            more_compression,
+            lifting,
+            float(np.mean(measured.solved)) < COMPLETE,
+        ),
         sum(lift.left_out() for lift in lifts.values()),
         tuple(notes),
     )
@@ -219,8 +232,21 @@ def _spine(
             continue
         k = int(np.argmax(np.where(lift.solved, series, -np.inf)))
         values[name] = (float(series[k]), float(lift.time[k]) - lift.start)
-    if not np.any(lift.solved):
+    share = float(np.mean(lift.solved)) if len(lift.solved) else 0.0
+    if not share:
         notes.append(f'{source}: no sample of the spine load was solved')
+    elif share < MAJORITY:
+        least = ' and '.join(f'{name} {value:.0f} N' for name, (value, _) in values.items())
+        notes.append(
+            f'{source}: {100 * share:.0f} % of the samples are good, too few for an assessment; '
+            f'at least {least}'
+        )
+        values = dict.fromkeys(values, (math.nan, math.nan))
+    elif share < COMPLETE:
+        notes.append(
+            f'{source}: {100 * share:.0f} % of the samples are good: the peaks are at least as '
+            'high as stated'
+        )
     pairs = (
         (limits.compression_action, 'compression'),
         (limits.compression_maximum, 'compression'),
@@ -262,12 +288,15 @@ def _difference(peaks: dict[str, Criterion]) -> float:
     return peaks['measured'].value - peaks['predicted'].value
 
 
-def _summary(peak: Criterion, zone: Zone, avoidable: float, lifting: LiftingAssessment) -> str:
+def _summary(
+    peak: Criterion, zone: Zone, avoidable: float, lifting: LiftingAssessment, least: bool
+) -> str:
     if zone is Zone.UNKNOWN:
         text = 'L5-S1 compression ' + zone_meaning(zone)
     else:
         text = (
-            f'Peak L5-S1 compression {peak.value:.0f} N ({peak.per_kilogram:.1f} N/kg), '
+            f'Peak L5-S1 compression {"at least " if least else ""}{peak.value:.0f} N '
+            f'({peak.per_kilogram:.1f} N/kg), '
             f'{zone_meaning(zone)}'
         )
     if avoidable > 0.0:
