@@ -215,8 +215,9 @@ def test_a_short_gap_is_bridged_and_a_long_one_is_not(tracker, lift, sides, solv
     assert measured.lift.report.status is SolveStatus.TRACKER_MARKERS_MISSING
     assert '5 bad frames bridged' in measured.lift.report.message
     bad = measured.lift.motion.time[measured.status != 0] - START
-    assert bad.min() == pytest.approx(1.50, abs=0.006)
-    assert bad.max() == pytest.approx(1.74, abs=0.006)
+    # The gap, and as far as the zero-phase filter carries it.
+    assert bad.min() == pytest.approx(1.50 - 0.11, abs=0.012)
+    assert bad.max() == pytest.approx(1.74 + 0.10, abs=0.012)
 
 
 def test_bad_stamps_are_counted_and_change_nothing(outputs, tracker, lift, solver):

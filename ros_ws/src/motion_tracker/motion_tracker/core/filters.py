@@ -191,6 +191,11 @@ class CausalFilter:
         """Reset to the steady state of the next sample."""
         self._state = None
 
+    def follow(self, other: 'CausalFilter', offset: Array) -> None:
+        """Take the state of another filter of the same design, moved by an offset (channels,)."""
+        if other._state is not None:
+            self._state = other._state + self._rest * offset
+
     def step(self, sample: npt.ArrayLike) -> tuple[Array, Array, Array]:
         """Filter one sample (channels,); return value, first and second derivative.
 

@@ -17,6 +17,7 @@ from human_model.skeleton import Skeleton
 from human_model.typing import Array
 from motion_tracker.core.dynamics import needed_force
 from motion_tracker.core.filters import CausalFilter
+from motion_tracker.core.forces.box_watch import BoxPlace
 from motion_tracker.core.forces.force_plates import PlateGeometry
 from motion_tracker.core.forces.hand_force import HandForceEstimator
 from motion_tracker.core.forces.plate_kernel import feet
@@ -71,7 +72,9 @@ class LiveMotion:
         self._counts = counts
         self._filter = CausalFilter(rate, settings.motion_cutoff, len(skeleton.coordinates))
         self._box_filter = CausalFilter(rate, settings.motion_cutoff, 3)
-        self._input: tuple[float, Array] | None = None
+        self._box_late = False
+        self._hands_filter = CausalFilter(rate, settings.motion_cutoff, 3)
+        self._input: tuple[float, Array, tuple[Array, Array] | None] | None = None
 
     @property
     def delay(self) -> float:
@@ -82,7 +85,8 @@ class LiveMotion:
         self,
         stamp: float,
         solution: IKSolution,
-        box: Array | None,
+        grips: Array | None,
+        box: BoxPlace | None,
         lifting: bool,
         end_known: float | None,
     ) -> tuple[TrackedFrame, list[Notice]]:
@@ -92,12 +96,14 @@ class LiveMotion:
         ----------
         stamp, solution
             Of the marker frame [s].
+        grips
+            Grip centres (2, 3) of the frame [m]; None if nothing is lifted.
         box
-            Centre of the box (3,) at the stamp [m]; None if there is none.
+            Place of the box at the stamp; None if it is not known.
         lifting, end_known
             Whether a lift is under way, and the stamp at which the end of the last one was known.
         """
-        (q, qd, qdd), box_motion = self._filtered(stamp, solution.q, box)
+        (q, qd, qdd), box_motion = self._filtered(stamp, solution.q, grips, box)
         time = stamp - self.delay
         forces, silent = self._ground(time)
         places = self._skeleton.points_and_frames(q)
@@ -113,6 +119,10 @@ class LiveMotion:
             forces |= self._hand_force_and_box(
                 time, hands, box_motion, missing, self._status.settling(stamp), lifting, end_known
             )
+        doubt = '' if grips is None else 'the box has not been seen'
+        self._box_late |= grips is not None and box is None
+        if box_motion is not None and box is not None:
+            doubt = self._box_doubt(box, hands, box_motion[0], missing, forces['hand_force'][0])
         if missing is not None:
             mass = self._carried_mass(
                 hands, None if box_motion is None else box_motion[0], lifting
@@ -121,11 +131,11 @@ class LiveMotion:
             if check is not None:
                 notices.append(Notice(str(check), check.ok))
         motion = self._skeleton.body_motion(time, q, qd, qdd, places=places, **forces)
-        status, message = self._status.judge(stamp, solution, ' and '.join(silent))
+        status, message = self._status.judge(stamp, solution, ' and '.join(silent), doubt)
         return TrackedFrame(motion, solution, status, message, self.delay), notices
 
     def _filtered(
-        self, stamp: float, q: Array, box: Array | None
+        self, stamp: float, q: Array, grips: Array | None, box: BoxPlace | None
     ) -> tuple[tuple[Array, Array, Array], tuple[Array, Array, Array] | None]:
         """Pass one frame, and the lost ones before it by interpolation, through the filters."""
         lost = 0
@@ -136,19 +146,38 @@ class LiveMotion:
         if lost > self._settings.longest_gap * self._rate + 1e-9:
             self._filter.reset()
             self._box_filter.reset()
+            self._hands_filter.reset()
             self._status.settle(stamp, 'the filters settle after a gap in the markers')
             lost = 0
+        places = self._places(grips, box)
         for i in range(1, lost + 1):
             share = i / (lost + 1)
             assert self._input is not None
             self._filter.step((1.0 - share) * self._input[1] + share * q)
-        self._input = stamp, q
-        if box is None:
+            if places is not None and self._input[2] is not None:
+                before, after = self._input[2], places
+                self._hands_filter.step((1.0 - share) * before[0] + share * after[0])
+                self._box_filter.step((1.0 - share) * before[1] + share * after[1])
+        self._input = stamp, q, places
+        motion = self._filter.step(q)
+        if box is None or places is None:
             self._box_filter.reset()
-            return self._filter.step(q), None
-        for _ in range(lost):
-            self._box_filter.step(box)
-        return self._filter.step(q), self._box_filter.step(box)
+            self._hands_filter.reset()
+            return motion, None
+        hands, place = places
+        if box.jumped and box.offset is None:
+            self._box_filter.reset()
+        elif box.jumped and box.offset is not None:
+            self._box_filter.follow(self._hands_filter, box.offset)
+        self._hands_filter.step(hands)
+        return motion, self._box_filter.step(place)
+
+    @staticmethod
+    def _places(grips: Array | None, box: BoxPlace | None) -> tuple[Array, Array] | None:
+        """Middle of the hands and centre of the box (3,) [m]; None without a box."""
+        if grips is None or box is None:
+            return None
+        return 0.5 * (grips[0] + grips[1]), box.position
 
     def _ground(self, time: float) -> tuple[dict[str, Array], list[str]]:
         """Ground reaction (1, 2, 3) if all plates have samples; else those that have none."""
@@ -170,6 +199,17 @@ class LiveMotion:
             'centre_of_pressure': centre_of_pressure,
             'free_moment': free,
         }, silent
+
+    def _box_doubt(
+        self, box: BoxPlace, hands: Array, place: Array, missing: float | None, force: Array
+    ) -> str:
+        """Reason why the load of the box cannot be right; empty without doubt."""
+        reason = box.doubt if box.offset is None else ''
+        if not reason and self._box_late and self._hand_force.bias is None:
+            reason = 'it was first seen in the hands'
+        if reason and self._hand_force.gate(hands, place) > 0.0:
+            return reason
+        return self._hand_force.doubt(missing, force)
 
     def _carried_mass(self, hands: Array, box: Array | None, lifting: bool) -> float | None:
         """Mass in the hands [kg]; None while it is not known."""

@@ -49,7 +49,9 @@ class LiveStatus:
         """Why samples after the stamp ``start`` [s] had masses in doubt; empty if none had."""
         return self._doubt if self._doubted >= start else ''
 
-    def judge(self, stamp: float, solution: IKSolution, silent: str) -> tuple[SolveStatus, str]:
+    def judge(
+        self, stamp: float, solution: IKSolution, silent: str, box: str = ''
+    ) -> tuple[SolveStatus, str]:
         """Return the status of a sample and why it is not good.
 
         Parameters
@@ -60,6 +62,8 @@ class LiveStatus:
             Of its marker frame.
         silent
             The plates without samples, in words; empty if both have some.
+        box
+            Reason why the load of the box cannot be right; empty without doubt.
         """
         if not solution.ok:
             return solution.status, solution.message
@@ -69,4 +73,6 @@ class LiveStatus:
             return SolveStatus.TRACKER_FILTER_SETTLING, self._reason
         if not self._watch.agrees:
             return SolveStatus.TRACKER_MASS_MISMATCH, str(self._watch.check)
+        if box:
+            return SolveStatus.TRACKER_BAD_INPUT, f'load of the box: {box}'
         return solution.status, solution.message

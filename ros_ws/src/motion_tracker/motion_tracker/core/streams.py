@@ -160,7 +160,8 @@ class SampledStream:
     def zero_phase_at(self, times: Array, cutoff: float, margin: float) -> Array | None:
         """Zero-phase filtered samples (n, channels) at ``times``; None if not covered.
 
-        Samples up to ``margin`` [s] before and after take part.
+        Samples up to ``margin`` [s] before and after take part. Gaps are bridged by a line;
+        `uncertain` names the times that they spoil.
         """
         first = bisect_left(self._stamps, times[0] - margin)
         last = bisect_right(self._stamps, times[-1] + margin)
@@ -171,14 +172,24 @@ class SampledStream:
         ):
             return None
         stamps = np.array(self._stamps[first:last])
-        if np.diff(stamps).max() > self._longest_gap():
-            return None
         grid = (
             stamps[0]
             + np.arange(int(np.floor((stamps[-1] - stamps[0]) * self.rate + 1e-6)) + 1) / self.rate
         )
         even = columns_at(grid, stamps, self._raw[first:last])
         return columns_at(times, grid, zero_phase(even, self.rate, cutoff))
+
+    def uncertain(self, times: Array, reach: float) -> npt.NDArray[np.bool_]:
+        """Whether times (n,) are in a gap of the samples, or nearer to one than ``reach`` [s]."""
+        found = np.zeros(len(times), dtype=np.bool_)
+        if self.rate == 0.0:
+            return found
+        first = max(0, bisect_left(self._stamps, times[0] - reach) - 1)
+        last = bisect_right(self._stamps, times[-1] + reach) + 1
+        stamps = np.array(self._stamps[first:last])
+        for k in np.flatnonzero(np.diff(stamps) > self._longest_gap()):
+            found |= (times > stamps[k] - reach) & (times < stamps[k + 1] + reach)
+        return found
 
     def forget(self, before: float) -> None:
         """Drop samples older than ``before`` [s]."""

@@ -12,6 +12,7 @@ from human_model.report import SolveStatus
 from human_model.typing import Array
 from motion_tracker.core.exceptions import TrackerError
 from motion_tracker.core.filters import MOTION_CUTOFF, PLATE_CUTOFF
+from motion_tracker.core.forces.box_watch import BoxPlace
 from motion_tracker.core.forces.force_plates import total_centre_of_pressure
 from motion_tracker.core.forces.hand_force import HandForceSettings
 from motion_tracker.core.inverse_kinematics.solution import IKSettings, IKSolution
@@ -148,7 +149,17 @@ Output = TrackedFrame | DetectedEvent | MeasuredLift | Notice
 
 @dataclass(frozen=True, eq=False)
 class FrameRecord:
-    """Stored result of one marker frame, for the lift that it may belong to."""
+    """Stored result of one marker frame, for the lift that it may belong to.
+
+    Attributes
+    ----------
+    stamp : float
+        [s].
+    solution : IKSolution
+    box : BoxPlace or None
+        Place of the box; None without one.
+    """
 
     stamp: float
     solution: IKSolution
+    box: BoxPlace | None = None

@@ -21,6 +21,7 @@ from human_model.subject import Subject
 from human_model.typing import Array
 from motion_tracker.core.exceptions import TrackerError
 from motion_tracker.core.filters import settling_time
+from motion_tracker.core.forces.box_watch import BoxFollower, BoxPlace
 from motion_tracker.core.forces.force_plates import PlateGeometry
 from motion_tracker.core.forces.hand_force import HandForceEstimator
 from motion_tracker.core.forces.mass_watch import MassWatch
@@ -35,9 +36,23 @@ from motion_tracker.core.live_status import LiveStatus
 from motion_tracker.core.markers.marker_frames import MarkerFrames
 from motion_tracker.core.markers.marker_model import model_for
 from motion_tracker.core.markers.marker_set import MarkerSet
+from motion_tracker.core.sample_clock import (
+    JITTER_SAMPLES,
+    SampleClock,
+    jitters,
+    mean_deviation,
+    mean_rate,
+)
 from motion_tracker.core.stream_synchronizer import StreamSynchronizer
 from motion_tracker.core.streams import RATE_SAMPLES, SAME, SampledStream, rate_of
 from motion_tracker.core.tracked import FROM_BOX, FROM_HANDS, Notice, Output, TrackerSettings
+
+#: Difference of the rates of box and markers up to which both come from the same cameras; the
+#: rate of ten jittering stamps is no better known.
+_SAME_RATE = 0.3
+
+#: Longest time by which jittering stamps of frames may be out of order [s].
+JITTER = 0.02
 
 #: Numbers of a sample of a plate, and of the box.
 _WRENCH, _PLACE = 6, 3
@@ -124,6 +139,10 @@ class MotionTracker:
         self._lifts = LiftQueue(
             builder, self.settings.margin, first_lift, self._hand_force, self._status, session
         )
+        self._frame_clock: SampleClock | None = None
+        self._box_clock: SampleClock | None = None
+        self._box_follower = BoxFollower(self._hand_force)
+        self._box_newest = -np.inf
         self._notices: list[Output] = []
 
     @property
@@ -163,7 +182,8 @@ class MotionTracker:
         if not np.isfinite(stamp):
             self.counts['markers: not finite'] += 1
             return []
-        if stamp <= self._newest:
+        uneven = self._frame_clock is not None and self._frame_clock.jitters
+        if stamp <= self._newest and not (uneven and stamp > self._newest - JITTER):
             kind = 'duplicate stamps' if stamp == self._newest else 'unsorted stamps'
             self.counts[f'markers: {kind}'] += 1
             return []
@@ -172,7 +192,9 @@ class MotionTracker:
             Notice(f'marker {name!r} is not tracked: it has no place in the marker model', True)
             for name in unknown
         ]
-        self._newest = stamp
+        if self._frame_clock is not None:
+            stamp = self._frame_clock.even(stamp)
+        self._newest = max(self._newest, stamp)
         # The fit needs nothing but markers: it is done while plates and box are on their way.
         solution = self.inverse_kinematics.solve(target, self._last_q)
         if np.isfinite(solution.rms):
@@ -227,6 +249,14 @@ class MotionTracker:
         """Take one position of the box's centre (3,), world [m]."""
         if len(position) != _PLACE:
             raise TrackerError(f'box: position has {len(position)} components')
+        # The box comes from the same cameras.
+        if (
+            self._box_clock is not None
+            and stamp > self._box_newest
+            and abs(self._box.rate / self._rate - 1.0) < _SAME_RATE
+        ):
+            self._box_newest = stamp
+            stamp = self._box_clock.even(stamp)
         self._box.push(stamp, position)
         return self._process(self._reaches_frame(self._box))
 
@@ -258,6 +288,12 @@ class MotionTracker:
         if self._rate == 0.0:
             if len(self._pending) <= RATE_SAMPLES and not (final and len(self._pending) > 2):
                 return outputs
+            if (
+                len(self._pending) < JITTER_SAMPLES
+                and not final
+                and jitters([stamp for stamp, *_ in self._pending])
+            ):
+                return outputs
             self._start()
         while self._pending:
             stamp, _, solution, arrival = self._pending[0]
@@ -275,6 +311,21 @@ class MotionTracker:
     def _start(self) -> None:
         stamps = [stamp for stamp, *_ in self._pending]
         self._rate = rate_of(stamps, 'markers')
+        spread = 0.0
+        if jitters(stamps):
+            spread = mean_deviation(stamps)
+            self._rate = rate_of([0.0, 1.0 / mean_rate(stamps)], 'markers')
+            self._notices.append(
+                Notice('markers: the stamps jitter; even times are used, as cameras expose evenly')
+            )
+        gap = self.settings.longest_gap
+        self._frame_clock = SampleClock(self._rate, gap, spread)
+        self._box_clock = SampleClock(self._rate, gap, spread)
+        self._pending = deque(
+            (self._frame_clock.even(stamp), target, solution, arrival)
+            for stamp, target, solution, arrival in self._pending
+        )
+        self._newest = max(self._newest, self._pending[-1][0])
         speed = initial_speed(stamps, [target for _, target, *_ in self._pending])
         if speed > self.settings.events.rest_speed:
             self._status.settle(
@@ -295,23 +346,30 @@ class MotionTracker:
 
     def _process_frame(self, stamp: float, solution: IKSolution) -> list[Output]:
         assert self._live is not None
-        self._lifts.record(stamp, solution)
         if not np.isfinite(solution.rms):
+            self._lifts.record(stamp, solution)
             self.counts['markers: frames without a pelvis'] += 1
             return []
-        box = self._box.raw_at(stamp) if self._hand_force.box_mass > 0 else None
+        box, hands = None, None
+        if self._hand_force.box_mass > 0:
+            hands = self.skeleton.points_and_frames(solution.q)[0][0, HANDS]
+            box = self._box_follower.place(stamp, self._box.raw_at(stamp), hands)
+            if box is not None and box.doubt:
+                self.counts['box: frames in which its pose was not used'] += 1
+        self._lifts.record(stamp, solution, box)
         events = self._detect(stamp, solution, box)
         frame, notices = self._live.sample(
-            stamp, solution, box, self._lifts.lifting, self._lifts.end_known
+            stamp, solution, hands, box, self._lifts.lifting, self._lifts.end_known
         )
         self._lifts.begin(stamp, self._rate)
         return [frame, *notices, *events]
 
-    def _detect(self, stamp: float, solution: IKSolution, box: Array | None) -> list[Output]:
-        if self._hand_force.box_mass > 0 and 'box' not in self._synchronizer.lost:
+    def _detect(self, stamp: float, solution: IKSolution, box: BoxPlace | None) -> list[Output]:
+        carried = self._box_follower.carried
+        if self._hand_force.box_mass > 0 and ('box' not in self._synchronizer.lost or carried):
             if box is None:
                 return []
-            events = self._detectors[FROM_BOX].push(stamp, float(box[2]))
+            events = self._detectors[FROM_BOX].push(stamp, float(box.position[2]))
             return self._lifts.take(events, FROM_BOX)
         heights = self.skeleton.point_array(solution.q)[0, :, 2]
         events = self._detectors[FROM_HANDS].push(

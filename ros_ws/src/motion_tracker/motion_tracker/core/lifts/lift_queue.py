@@ -12,6 +12,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from motion_tracker.core.forces.box_watch import BoxPlace
 from motion_tracker.core.forces.hand_force import HandForceEstimator
 from motion_tracker.core.inverse_kinematics.solution import IKSolution
 from motion_tracker.core.lifts.lift_events import LiftEvent, LiftPhase
@@ -76,9 +77,9 @@ class LiftQueue:
         """Whether a lift is under way."""
         return self._current is not None
 
-    def record(self, stamp: float, solution: IKSolution) -> None:
+    def record(self, stamp: float, solution: IKSolution, box: BoxPlace | None = None) -> None:
         """Store a frame for the lift that it may belong to, and allow one step of the builds."""
-        self._frames.append(FrameRecord(stamp, solution))
+        self._frames.append(FrameRecord(stamp, solution, box))
         self._latest = stamp
         self._allowed_steps += 1
 

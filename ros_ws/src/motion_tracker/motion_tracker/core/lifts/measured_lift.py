@@ -23,6 +23,30 @@ from motion_tracker.core.tracked import FrameRecord, MeasuredLift, TrackerSettin
 _HANDS = (POINTS.index('hand_r'), POINTS.index('hand_l'))
 
 
+#: Reach of the impulse response of the zero-phase filter, in periods of its cutoff: beyond it the
+#: response of the two passes of second order is below 1 % of its peak.
+_REACH = 0.6
+
+
+def _unconnected(
+    grid: Array, records: Sequence[FrameRecord], reach: float
+) -> npt.NDArray[np.bool_]:
+    """Whether the box has no place near a sample, or one that jumps, (n,)."""
+    found = np.zeros(len(grid), dtype=np.bool_)
+    unseen: float | None = None
+    for record in records:
+        if record.box is None:
+            found |= np.abs(grid - record.stamp) <= reach
+            continue
+        if record.box.jumped and unseen is not None:
+            found |= (grid >= unseen - reach) & (grid <= record.stamp + reach)
+        if not record.box.doubt:
+            unseen = None
+        elif unseen is None:
+            unseen = record.stamp
+    return found
+
+
 class LiftBuilder:
     """Makes measured lifts of one recording.
 
@@ -133,13 +157,16 @@ class LiftBuilder:
             feet[name] = self._foot(name, times)
             yield None
         forces, silent = self._ground(times, feet)
-        if silent:
-            status[status == 0] = SolveStatus.TRACKER_NO_GROUND_FORCE
+        gaps = np.zeros(len(times), dtype=np.bool_)
+        for name in SIDES:
+            gaps |= self._wrenches[name].uncertain(times, _REACH / self._settings.plate_cutoff)
+        status[(status == 0) & (gaps | bool(silent))] = SolveStatus.TRACKER_NO_GROUND_FORCE
         if doubt:
             status[status == 0] = SolveStatus.TRACKER_MASS_MISMATCH
         places = self._skeleton.points_and_frames(q)
         yield None
-        box = self._carried(grid, inside, rate, estimator)
+        box = self._carried(grid, inside, rate, estimator, records)
+        box_doubts: list[str] = []
         if box is not None:
             yield None
             ground = None if silent else forces['ground_force']
@@ -152,11 +179,22 @@ class LiftBuilder:
             forces['hand_force'] = estimator.estimate(
                 missing, places[0][:, _HANDS], *box, support, None
             )
+            doubtful = _unconnected(grid, records, _REACH / self._settings.motion_cutoff)[inside]
+            if missing is not None and estimator.bias is not None:
+                missing = np.where(gaps, np.nan, missing)
+                apart = estimator.bias - missing + forces['hand_force'][:, :, 2].sum(axis=1)
+                doubtful |= np.abs(apart) > estimator.balance_limit()
+            if doubtful.any():
+                box_doubts.append(f'load of the box in doubt in {int(doubtful.sum())} samples')
+                status[doubtful & (status == 0)] = SolveStatus.TRACKER_BAD_INPUT
+        elif estimator.box_mass > 0.0:
+            box_doubts.append('the box was not seen: its load is not known')
+            status[status == 0] = SolveStatus.TRACKER_BAD_INPUT
         yield None
         motion = self._skeleton.body_motion(times, q, qd, qdd, places=places, **forces)
         rms, largest = self._residuals(times, records, stamps, rate)
         yield None
-        report = self._report(records, inside, status, bridged, silent, doubt)
+        report = self._report(records, inside, status, bridged, silent, [doubt, *box_doubts])
         lift = Lift(lift_id, 'measured', start, end, estimator.box_mass, motion, report)
         yield MeasuredLift(lift, status, rms, largest)
 
@@ -182,6 +220,12 @@ class LiftBuilder:
             if short and first > 0 and last < len(grid):
                 status[first:last] = 0
                 bridged += int(last - first)
+        # The filter carries what a long gap was bridged with into its neighbours.
+        reach = int(np.ceil(_REACH / self._settings.motion_cutoff / (grid[1] - grid[0])))
+        for first, last in zip(edges[::2], edges[1::2], strict=True):
+            if status[first]:
+                near = status[max(0, first - reach) : last + reach]
+                near[near == 0] = status[first]
         return status, bridged
 
     def _foot(self, name: str, times: Array) -> GroundReaction | None:
@@ -218,17 +262,16 @@ class LiftBuilder:
         inside: npt.NDArray[np.bool_],
         rate: float,
         estimator: HandForceEstimator,
+        records: Sequence[FrameRecord],
     ) -> tuple[Array, Array] | None:
         """Box position (n, 3) [m] and acceleration (n, 3) [m/s^2]; None if there is no box."""
         if estimator.box_mass == 0.0:
             return None
-        rows = self._box.raw_rows_at(grid)
-        known = np.isfinite(rows[:, 0])
-        if known.sum() < 2 or not known[inside].mean() > 0.5:
+        found = [(record.stamp, record.box.position) for record in records if record.box]
+        if len(found) < 2 or len(found) < 0.5 * len(records):
             return None
-        box = zero_phase(
-            columns_at(grid, grid[known], rows[known]), rate, self._settings.motion_cutoff
-        )
+        stamps, rows = np.array([at for at, _ in found]), np.array([row for _, row in found])
+        box = zero_phase(columns_at(grid, stamps, rows), rate, self._settings.motion_cutoff)
         return box[inside], derivatives(box, rate)[1][inside]
 
     def _residuals(
@@ -249,7 +292,7 @@ class LiftBuilder:
         status: IntArray,
         bridged: int,
         silent: Sequence[str],
-        doubt: str,
+        doubts: Sequence[str],
     ) -> SolveReport:
         solutions = [record.solution for record in records]
         words = [
@@ -272,8 +315,7 @@ class LiftBuilder:
                 'no complete ground reaction: samples missing of the '
                 + ' and the '.join(f'{name} plate' for name in silent)
             )
-        if doubt:
-            words.append(doubt)
+        words += [doubt for doubt in doubts if doubt]
         return SolveReport(
             status=worst,
             message='; '.join(words),
