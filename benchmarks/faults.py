@@ -155,11 +155,6 @@ def play(samples: Iterable[Sample]) -> Outcome:
     return outcome
 
 
-def by_arrival(samples: Sequence[Sample]) -> list[Sample]:
-    """Return the samples in the order of their arrival."""
-    return sorted(samples, key=lambda sample: sample.arrival)
-
-
 def gone(stream: str, start: float, end: float) -> Fault:
     """Return the fault of a stream without samples between two times [s]."""
     return lambda samples: [
@@ -216,7 +211,7 @@ def stamped_on_arrival(streams: Sequence[str], rms: float) -> Fault:
                 result.append(replace(s, stamp=at, arrival=at))
             else:
                 result.append(s)
-        return by_arrival(result)
+        return sorted(result, key=lambda s: s.arrival)
 
     return fault
 
@@ -235,7 +230,7 @@ def out_of_order(streams: Sequence[str], delay: float, exchanged: float = 0.0) -
                 result.append(replace(s, arrival=s.arrival + extra))
             else:
                 result.append(s)
-        return by_arrival(result)
+        return sorted(result, key=lambda s: s.arrival)
 
     return fault
 
@@ -363,7 +358,6 @@ CASES: dict[str, Fault] = {
 def wrong(outcome: Outcome, clean: Outcome) -> list[str]:
     """Return in words which peaks are wrong although they look good."""
     found = []
-    # A live peak below the right one is wrong if the samples round that instant look good.
     peak = int(np.nanargmax(clean.load))
     near = np.abs(outcome.time - clean.time[peak]) < 0.015
     covered = bool(near.any()) and bool(np.isfinite(outcome.load[near]).all())
@@ -388,22 +382,15 @@ def main(names: Sequence[str]) -> None:
         outcome = play(fault(list(samples)))
         found = wrong(outcome, clean)
         wrongs += bool(found)
-        lifts = ', '.join(f'{peak:.0f}' for peak in outcome.assessed)
-        print(
-            f'{name:34s} {outcome.good:4d} of {outcome.frames:4d} good, live '
-            f'{outcome.live:5.0f} N, lifts {lifts or "none"} {", ".join(found) and "WRONG"}'
-        )
+        print(f'{name:34s} {outcome.live:5.0f} N', *outcome.assessed, *found)
         rows[name] = {
             'live_peak_n': round(outcome.live, 1) if outcome.good else None,
             'assessed_n': [
                 round(peak, 1) if np.isfinite(peak) else None for peak in outcome.assessed
             ],
             'reports': outcome.reports,
-            'good_live_samples': outcome.good,
-            'live_samples': outcome.frames,
             'wrong_with_good_status': found,
         }
-    print(f'{len(rows)} cases, {wrongs} wrong with good status')
     if not names:
         results = {'cases': len(rows), 'wrong_with_good_status': wrongs, 'rows': rows}
         RESULTS.write_text(json.dumps(results, indent=1) + '\n', encoding='utf-8')

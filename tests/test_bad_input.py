@@ -182,7 +182,8 @@ def test_markers_that_are_not_numbers(broken, bags, offline):
     assert good == pytest.approx(len(expected) - 6 - 20 - 48, abs=5)
     measured = found.results.lifts['lift_001'].single['measured_lift'].motion
     status = np.asarray(measured.status)
-    assert np.count_nonzero(status) == pytest.approx(20, abs=2)
+    # And 0.1 s on each side, as far as the zero-phase filter carries the gap.
+    assert np.count_nonzero(status) == pytest.approx(20 + 2 * 10, abs=3)
 
 
 def test_swapped_sides_are_named(broken):

@@ -89,6 +89,11 @@ class SampledStream:
         return not self._stamps
 
     @property
+    def span(self) -> float:
+        """Time from the oldest to the newest sample [s]."""
+        return self.last - self._stamps[0] if self._stamps else 0.0
+
+    @property
     def delay(self) -> float:
         """Delay of the causal filter [s]."""
         return self._filter.delay if self._filter else 0.0

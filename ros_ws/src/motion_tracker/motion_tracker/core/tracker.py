@@ -51,6 +51,13 @@ from motion_tracker.core.tracked import FROM_BOX, FROM_HANDS, Notice, Output, Tr
 #: rate of ten jittering stamps is no better known.
 _SAME_RATE = 0.3
 
+#: Samples of plates and box that are kept while no markers come [s]: more than the markers may
+#: lag behind them, 16 s with the queue of a subscriber.
+_IDLE = 20.0
+
+#: A gap in the markers that ends a lift [s]: nobody knows what happened in it.
+_LOST_SIGHT = 2.0
+
 #: Longest time by which jittering stamps of frames may be out of order [s].
 JITTER = 0.02
 
@@ -267,6 +274,7 @@ class MotionTracker:
         outputs = self._process_pending(True)
         for source, detector in self._detectors.items():
             outputs += self._lifts.take(detector.finish(), source)
+        outputs += self._lifts.give_up(self._newest)
         self._lifts.begin(np.inf, self._rate)
         return outputs + self._lifts.finish()
 
@@ -276,8 +284,16 @@ class MotionTracker:
 
     def _process(self, frames: bool) -> list[Output]:
         """Process pending frames, if ``frames``, and take a step of the lifts being built."""
+        if not frames:
+            self._forget_idle()
         outputs = self._process_pending(False) if frames else []
         return outputs + self._lifts.work(bool(outputs))
+
+    def _forget_idle(self) -> None:
+        """Bound what plates and box leave behind while no markers come."""
+        for stream in (*self._wrenches.values(), self._box):
+            if stream.span > 2.0 * _IDLE and stream.last - self._newest > _IDLE:
+                stream.forget(stream.last - _IDLE)
 
     def _needed_streams(self) -> list[SampledStream]:
         streams = list(self._wrenches.values())
@@ -345,6 +361,12 @@ class MotionTracker:
         )
 
     def _process_frame(self, stamp: float, solution: IKSolution) -> list[Output]:
+        given_up = self._lifts.give_up(stamp) if self._lifts.gap(stamp) > _LOST_SIGHT else []
+        for source in self._detectors if given_up else ():
+            self._detectors[source] = LiftEventDetector(self.settings.events)
+        return given_up + self._take_frame(stamp, solution)
+
+    def _take_frame(self, stamp: float, solution: IKSolution) -> list[Output]:
         assert self._live is not None
         if not np.isfinite(solution.rms):
             self._lifts.record(stamp, solution)

@@ -18,7 +18,14 @@ from motion_tracker.core.inverse_kinematics.solution import IKSolution
 from motion_tracker.core.lifts.lift_events import LiftEvent, LiftPhase
 from motion_tracker.core.lifts.measured_lift import LiftBuilder
 from motion_tracker.core.live_status import LiveStatus
-from motion_tracker.core.tracked import FROM_BOX, DetectedEvent, FrameRecord, MeasuredLift, Output
+from motion_tracker.core.tracked import (
+    FROM_BOX,
+    DetectedEvent,
+    FrameRecord,
+    MeasuredLift,
+    Notice,
+    Output,
+)
 
 #: Frames older than this are removed unless a lift needs them [s].
 _HISTORY = 15.0
@@ -100,6 +107,23 @@ class LiftQueue:
                 self.end_known = event.time + event.detection_delay
                 outputs.append(DetectedEvent(event, lift_id, source))
         return outputs
+
+    def gap(self, stamp: float) -> float:
+        """Return the time since the last frame [s]."""
+        return stamp - self._latest
+
+    def give_up(self, stamp: float) -> list[Output]:
+        """Drop the lift under way, whose end will not be found after the stamp [s]."""
+        if self._current is None:
+            return []
+        lift_id, start, _ = self._current
+        self._current = None
+        return [
+            Notice(
+                f'{lift_id} began at {start.time:.3f} s and has no end in the frames until '
+                f'{min(stamp, self._latest):.3f} s: it is not assessed'
+            )
+        ]
 
     def begin(self, now: float, rate: float) -> None:
         """Begin to build the lifts whose frames have all arrived.
