@@ -84,8 +84,8 @@ def run(request):
             if name == 'markers':
                 outputs += tracker.push_markers(
                     seconds(message.header.stamp),
-                    [m.marker_name for m in message.markers],
-                    [vector(m.translation) for m in message.markers],
+                    message.names.split('\n'),
+                    np.reshape(message.positions, (-1, 3)),
                 )
             elif name == 'box/pose':
                 outputs += tracker.push_box(
