@@ -23,6 +23,7 @@ from human_model.motion import Lift
 from human_model.subject import Subject
 from human_model.task import Box
 from human_model.typing import Array
+from lift_predictor.core.options import PredictorOptions
 from lift_predictor.core.pareto import (
     ParetoCurve,
     TotalError,
@@ -55,6 +56,10 @@ class Man:
     subject: Subject
     lift: Lift
     percentile: Percentile
+
+
+OPTIONS: Final = PredictorOptions(n_control=8, n_nodes=29)
+"""With 7 control points two of the twelve men have no motion to the middle posture."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +113,7 @@ class Study:
 @cache
 def _worker() -> LiftPredictor:
     """Return this process's predictor."""
-    return LiftPredictor()
+    return LiftPredictor(OPTIONS)
 
 
 def task_box() -> Box:

@@ -203,11 +203,11 @@ def random_task(
                 0.0, np.zeros(3), np.array([[0.0, -STANCE, height], [0.0, STANCE, height]]),
                 np.array([-TOE_OUT, TOE_OUT]),
             )  # fmt: skip
-            depth, width, _ = plan.box_size
+            width = plan.box_size[1]
             end, mass = plan.end, plan.box_mass
             assert mass is not None
             places = np.array([plan.start, (c * end[0], s * end[0], end[2])])
-            box = PlacedBox((mass, mass), depth, width, places, np.array([0.0, turn]))
+            box = PlacedBox((mass, mass), plan.box_size, width, places, np.array([0.0, turn]))
             task = place_task(person, frame, box, (DURATION,) * 2, model.grid, name)
             return task, finder.starts(task, model.grid)
         except (HumanModelError, LiftPredictorError):

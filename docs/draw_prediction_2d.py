@@ -16,7 +16,7 @@ from typing import Final
 import matplotlib as mpl
 import numpy as np
 from bags.simulate.group import AGE, MASS, STATURE, lifting_task, simulated_lift
-from benchmarks.predictor_pareto import TASK, Study, study, task_box
+from benchmarks.predictor_pareto import OPTIONS, TASK, Study, study, task_box
 from docs.draw_figures import BLUE, GREY, ORANGE, STYLE, save
 from matplotlib.figure import Figure
 
@@ -63,7 +63,7 @@ def average_man() -> Subject:
 def validate(enumerate_too: bool) -> Validation:
     """Find the strength of the average man and predict his heaviest box."""
     subject = average_man()
-    predictor = LiftPredictor()
+    predictor = LiftPredictor(OPTIONS)
     lift = simulated_lift(subject, lifting_task(TASK))
     box = task_box()
     found, seconds = {}, {}

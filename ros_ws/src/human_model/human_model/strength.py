@@ -13,6 +13,7 @@ angle and speed. Upper limits act in the coordinate's positive direction; lower 
 Torques for which nothing is published get the large fixed bound `LARGE`.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -118,8 +119,8 @@ class JointStrength:
     skeleton : {'2d_10dof', '3d_40dof'}
         In the sagittal skeleton paired joints have twice the strength of one (thesis 2.1).
     subject : Subject
-        Sex and age choose the rows, mass and stature scale those given in m g h, ``strength_z``
-        is the z-score.
+        Sex and age choose the rows, with interpolation between the age groups; mass and stature
+        scale those given in m g h, ``strength_z`` is the z-score.
     coefficient_set : str
         One of `coefficient_sets`.
 
@@ -199,24 +200,29 @@ def _bound(row: Row, subject: Subject, coefficient_set: str) -> StrengthBound:
             f'strength_surfaces.csv, set {coefficient_set}: no row for '
             f'{row["joint"]} {row["direction"]}, {subject.sex}'
         )
-    data = min(found, key=lambda item: _years_off(item, subject.age))
-    scale = data.number('scale')
-    if data['unit'] == 'mgh':
+    data = _at_age(found, subject.age)
+    scale = data['scale']
+    if found[0]['unit'] == 'mgh':
         scale *= subject.mass * GRAVITY * subject.stature
-    grade = 1.0 + subject.strength_z * data.number('cv')
+    grade = 1.0 + subject.strength_z * data['cv']
     if grade <= 0.0:
         raise StrengthError(
-            f'subject.strength_z: {subject.strength_z:g} with CV {data["cv"]} '
+            f'subject.strength_z: {subject.strength_z:g} with CV {data["cv"]:g} '
             f'leaves no {row["joint"]} {row["direction"]} strength'
         )
     return StrengthBound(
-        data.numbers(*_COEFFICIENTS),
+        tuple(data[name] for name in _COEFFICIENTS),
         sign * copies * scale * grade,
         *factors,
-        data['source'],
+        found[0]['source'],
     )
 
 
-def _years_off(row: Row, age: float) -> float:
-    """Years between an age and the age group of a row; 0 inside the group."""
-    return max(row.number('age_low') - age, age - row.number('age_high'), 0.0)
+def _at_age(groups: Sequence[Row], age: float) -> dict[str, float]:
+    """Return scale, CV and coefficients at an age, linear between the middles of age groups."""
+    ordered = sorted(groups, key=lambda row: row.number('age_low'))
+    middle = [0.5 * sum(row.numbers('age_low', 'age_high')) for row in ordered]
+    return {
+        name: float(np.interp(age, middle, [row.number(name) for row in ordered]))
+        for name in ('scale', 'cv', *_COEFFICIENTS)
+    }

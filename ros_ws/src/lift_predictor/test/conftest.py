@@ -29,7 +29,8 @@ from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.problem.comparison import LiftComparison
 from lift_predictor.core.problem.prediction import Prediction
 
-BOX_SIZE = BOX_DEPTH, _, BOX_HEIGHT = (0.238, 0.305, 0.127)
+BOX_SIZE = (0.238, 0.305, 0.127)
+BOX_DEPTH, _, BOX_HEIGHT = BOX_SIZE
 BOX_GAP, SHELF_GAP, SHELF_HEIGHT = 0.033, 0.305, 0.9
 DURATION = 1.2
 
@@ -67,7 +68,7 @@ def placed(subject: Subject) -> Callable[[SpatialGrid, float], SpatialTask]:
     places = np.array([[0.42, 0.0, 0.2], [0.3, 0.3, 0.9]])
 
     def make(grid: SpatialGrid, mass: float) -> SpatialTask:
-        box = PlacedBox((mass, mass), 0.24, 0.3, places, np.array([0.0, 0.7]))
+        box = PlacedBox((mass, mass), (0.24, 0.3, 0.127), 0.3, places, np.array([0.0, 0.7]))
         return place_task(who, frame, box, (1.3, 1.3), grid)
 
     return make
@@ -117,13 +118,15 @@ def lift_parameters(person: Person, mass: float) -> LiftParameters:
         strength_lower=person.strength_lower,
         strength_upper=person.strength_upper,
         circle=person.circle,
+        hip_range=person.hip_range,
         ankle=ankle,
         support=support,
         ground_height=0.0,
         gravity=person.gravity,
         duration=DURATION,
         box_mass=mass,
-        box_radius=BOX_DEPTH / 2,
+        box_half=0.5 * np.array([BOX_DEPTH, BOX_HEIGHT]),
+        box_acceleration=1e3,
         box_from_hand=np.zeros(2),
         lowest_grip=0.0,
     )

@@ -66,7 +66,7 @@ def test_right_side_is_the_mirror_image(planner) -> None:
     """For a woman: the published trunk rotation of men differs by 1 % between the sides."""
     woman = Subject(pseudonym='w', sex='female', mass=60.0, stature=1.65, age=31.0)
     left, right = (
-        planner.plan(woman, replace(TASK, end=(0.3, side * 0.3, 1.0))) for side in (1.0, -1.0)
+        planner.plan(woman, replace(TASK, end=(0.3, side * 0.35, 1.0))) for side in (1.0, -1.0)
     )
     assert left.report.ok and right.report.ok
     assert right.prediction.effort == pytest.approx(left.prediction.effort, rel=1e-3)
@@ -189,7 +189,7 @@ def test_too_high_a_shelf_at_the_side_gives_a_lower_one(planner, subject, monkey
 def test_too_heavy_a_box_at_the_side_names_a_limit_and_a_mass(planner, subject) -> None:
     planned = planner.plan(subject, replace(TASK, box_mass=90.0))
     assert planned.report.status is SolveStatus.PREDICTOR_INFEASIBLE
-    assert 'joint torque limit' in planned.report.message
+    assert 'breaks first' in planned.report.message
     assert 'kg instead of 90.00 kg' in planned.report.message
     nearest = planned.prediction.nearest.prediction
     assert nearest.report.ok

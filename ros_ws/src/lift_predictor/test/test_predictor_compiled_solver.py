@@ -29,10 +29,12 @@ from lift_predictor.core.solvers.solution import InteriorPointOptions, Status
 from lift_predictor.core.solvers.solve import solve
 from lift_predictor.core.solvers.spline_nlp import SplineNlp, make_assembler
 
+BOX_SIZE = (0.238, 0.305, 0.127)
+
 pytestmark = pytest.mark.skipif(
     cache.find_compiler() is None, reason='no C compiler on this machine'
 )
-GRID = SagittalGrid(7, 25)
+GRID = SagittalGrid(10, 25, 'acceleration')
 
 
 @pytest.fixture(scope='module')
@@ -40,7 +42,7 @@ def lift(make_lift, person: Person) -> Callable[[float], tuple[SplineNlp, list[n
     assembler = sagittal_assembler(sagittal_library(), GRID)
 
     def make(mass: float) -> tuple[SplineNlp, list[np.ndarray]]:
-        task = build_task(person, make_lift(mass), Box(mass, (0.238, 0.305, 0.127)))
+        task = build_task(person, make_lift(mass), Box(mass, BOX_SIZE))
         programme = sagittal_nlp(assembler, GRID, task.parameters.pack(), task.bounds)
         starts = [
             np.append(start.control.ravel(), mass) for start in make_starts(task, GRID.spline)

@@ -27,9 +27,9 @@ def task(**fields) -> Task:
 
 def test_box_of_a_task() -> None:
     box = conversions.box_from_msg(task(box_end=Point(x=0.5, y=0.1, z=0.9)), 7.0)
-    assert (box.mass, box.depth, box.start) == (7.0, 0.238, None)
+    assert (box.mass, box.size, box.start) == (7.0, (0.238, 0.305, 0.127), None)
     np.testing.assert_allclose(box.end, [0.5, 0.1, 0.9])
-    assert conversions.box_from_msg(task(), 0.0).depth == 0.0
+    assert conversions.box_from_msg(task(), 0.0).size == (0.0, 0.0, 0.0)
 
 
 def test_half_known_place_of_the_box_is_refused() -> None:

@@ -21,7 +21,8 @@ from lift_predictor.core.options import PredictorOptions
 from lift_predictor.core.predictor import LiftPredictor
 from lift_predictor.core.problem.run import Start
 
-SIZE = (0.238, 0.305, 0.127)
+BOX_SIZE = (0.238, 0.305, 0.127)
+
 MASSES = (0.0, 7.0, 12.0)
 
 
@@ -178,26 +179,26 @@ def refused(result, status: SolveStatus, *words: str) -> None:
 
 def test_too_heavy_a_box_is_infeasible_and_names_the_constraint(subject, make_lift) -> None:
     patient = LiftPredictor(PredictorOptions(time_limit=60.0))
-    result = patient.predict(subject, make_lift(30.0), Box(30.0, SIZE))
+    result = patient.predict(subject, make_lift(30.0), Box(30.0, BOX_SIZE))
     refused(result, SolveStatus.PREDICTOR_INFEASIBLE, 'no feasible motion', 'joint torque limit')
     assert result.comparison is None
 
 
 def test_unreachable_target_is_named(subject, predictor, make_lift) -> None:
-    box = Box(7.0, SIZE, end=np.array([1.6, 0.0, 1.0]))
+    box = Box(7.0, BOX_SIZE, end=np.array([1.6, 0.0, 1.0]))
     result = predictor.predict(subject, make_lift(7.0), box)
     refused(result, SolveStatus.PREDICTOR_UNREACHABLE, 'hand position (4.6) at the end', 'mm')
 
 
 def test_bad_recording_is_not_predicted(subject, predictor, make_lift) -> None:
     bad = SolveReport(SolveStatus.TRACKER_MARKERS_MISSING, 'marker T10 is missing')
-    result = predictor.predict(subject, replace(make_lift(7.0), report=bad), Box(7.0, SIZE))
+    result = predictor.predict(subject, replace(make_lift(7.0), report=bad), Box(7.0, BOX_SIZE))
     refused(result, SolveStatus.PREDICTOR_BAD_INPUT, 'TRACKER_MARKERS_MISSING', 'T10')
 
 
 def test_time_limit_is_kept(subject: Subject, make_lift) -> None:
     hurried = LiftPredictor(PredictorOptions(time_limit=1e-3))
-    result = hurried.predict(subject, make_lift(7.0), Box(7.0, SIZE))
+    result = hurried.predict(subject, make_lift(7.0), Box(7.0, BOX_SIZE))
     refused(result, SolveStatus.PREDICTOR_TIME_LIMIT, 'time limit')
 
 

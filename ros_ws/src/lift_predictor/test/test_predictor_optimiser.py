@@ -20,7 +20,9 @@ from lift_predictor.core.problem.run import Start
 from lift_predictor.core.problem.task_solver import TaskSolver
 from lift_predictor.core.solvers.solution import InteriorPointOptions, Status
 
-GRID = SagittalGrid(7, 25)
+BOX_SIZE = (0.238, 0.305, 0.127)
+
+GRID = SagittalGrid(10, 25, 'acceleration')
 
 
 @pytest.fixture(scope='module')
@@ -30,7 +32,7 @@ def solver() -> TaskSolver[SagittalTask]:
 
 @pytest.fixture(scope='module')
 def task(make_lift, person: Person) -> Callable[[float], SagittalTask]:
-    return lambda mass: build_task(person, make_lift(mass), Box(mass, (0.238, 0.305, 0.127)))
+    return lambda mass: build_task(person, make_lift(mass), Box(mass, BOX_SIZE))
 
 
 @pytest.mark.parametrize('mass', [7.0, 12.0])

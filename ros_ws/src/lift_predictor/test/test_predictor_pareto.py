@@ -24,7 +24,9 @@ from lift_predictor.core.pareto import (
 )
 from lift_predictor.core.problem.maximum_weight import Weighting, maximum_weight
 
-BOX = Box(7.0, (0.238, 0.305, 0.127))
+BOX_SIZE = (0.238, 0.305, 0.127)
+
+BOX = Box(7.0, BOX_SIZE)
 
 
 @pytest.fixture(scope='module')

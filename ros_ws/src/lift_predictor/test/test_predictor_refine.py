@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from human_model.subject import Subject
-from lift_predictor.core.models.sagittal.grid import SagittalGrid
 from lift_predictor.core.models.sagittal.lift_model import SagittalModel
 from lift_predictor.core.models.sagittal.person import Person
 from lift_predictor.core.models.sagittal.plan import build_plan
@@ -80,7 +80,7 @@ def test_a_lift_that_can_be_done_is_found_and_holds_between_the_nodes(
     assert predicted.box_mass == pytest.approx(task.box_mass)
     best = predicted.runs[0]
     check = verify(
-        solver.model.library, SagittalGrid(7, 97), best.control,
+        solver.model.library, replace(solver.model.grid, n_nodes=97), best.control,
         replace(plan.task.parameters, box_mass=best.box_mass), plan.task.bounds,
     )  # fmt: skip
     assert check.n_points == 961
@@ -115,7 +115,7 @@ def test_what_cannot_hold_between_the_nodes_is_not_passed_off_as_solved(
     task, runs_before = between_nodes
     # The check is of a box that nobody can carry past the knees.
     # The problem that was solved has a small one.
-    wide = replace(task, parameters=replace(task.parameters, box_radius=0.6))
+    wide = replace(task, parameters=replace(task.parameters, box_half=np.array([0.6, 0.6])))
     runs, check = refiner(1).refine(wide, runs_before)
     assert not check.passed
     assert check.violation['collision [m]'] > 0.01

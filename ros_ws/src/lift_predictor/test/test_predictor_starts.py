@@ -17,7 +17,7 @@ from lift_predictor.core.models.sagittal.starts import make_starts, smooth_step
 from lift_predictor.core.models.sagittal.task import build_task
 from lift_predictor.core.problem.sampling import sample_times
 
-SPLINE = RestToRestSpline(7)
+SPLINE = RestToRestSpline(10, 'acceleration')
 DENSE = np.linspace(0.0, 1.0, 61)
 
 
@@ -61,7 +61,7 @@ def test_smooth_start_passes_the_middle_posture(task) -> None:
 
 def test_arc_keeps_a_deep_box_clearer_than_the_smooth_step(task) -> None:
     """A box twice as deep: the arc carries it round the knees, the step through them."""
-    deep = replace(task, parameters=replace(task.parameters, box_radius=0.2))
+    deep = replace(task, parameters=replace(task.parameters, box_half=np.array([0.2, 0.1])))
     inner = SPLINE.basis(DENSE[6:-6])
     gaps = {
         start.name: chain_positions(inner @ start.control, deep.parameters).gaps

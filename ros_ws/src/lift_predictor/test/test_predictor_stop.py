@@ -26,13 +26,15 @@ from lift_predictor.core.solvers.solution import InteriorPointOptions, Status
 from lift_predictor.core.solvers.solve import solve
 from lift_predictor.core.solvers.stop import StopFlag
 
+BOX_SIZE = (0.238, 0.305, 0.127)
+
 PROMPT = 0.5
 """Time within which work ends on a machine that has much else to do [s]; alone it is 20 ms."""
 
 
 @pytest.fixture(scope='module')
 def task(person, make_lift):
-    return build_task(person, make_lift(7.0), Box(7.0, (0.238, 0.305, 0.127)))
+    return build_task(person, make_lift(7.0), Box(7.0, BOX_SIZE))
 
 
 def test_flag_tells_why_and_can_be_used_again() -> None:

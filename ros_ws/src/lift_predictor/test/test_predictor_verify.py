@@ -50,7 +50,7 @@ def test_finds_what_a_moved_control_point_breaks(solved) -> None:
     [
         ('joint_torque [N m]', lambda p: replace(p, strength_upper=0.5 * p.strength_upper)),
         ('balance [m]', lambda p: replace(p, support=p.support - 0.15)),
-        ('collision [m]', lambda p: replace(p, box_radius=p.box_radius + 0.1)),
+        ('collision [m]', lambda p: replace(p, box_half=p.box_half + 0.1)),
         ('height [m]', lambda p: replace(p, lowest_grip=p.lowest_grip + 0.1)),
     ],
 )
@@ -75,7 +75,7 @@ def test_excess_sits_at_the_nodes_of_its_interval(solved) -> None:
     check, _, task = solved
     hard = replace(task.parameters, strength_upper=0.8 * task.parameters.strength_upper)
     excess = check(parameters=hard).excess
-    assert excess.shape == (2, 25, 27)
+    assert excess.shape == (2, 25, 35)
     torque_above = excess[1, :, 0]
     assert torque_above.max() > 0.0
     assert torque_above[-1] == 0.0, 'standing with the box does not load the spine to its limit'

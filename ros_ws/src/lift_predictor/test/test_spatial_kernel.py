@@ -96,7 +96,11 @@ def lift_programme(subject: Subject):
         np.array([-0.14, 0.14]),
     )  # fmt: skip
     box = PlacedBox(
-        (7.0, 7.0), 0.24, 0.3, np.array([[0.42, 0.0, 0.2], [0.3, 0.3, 0.9]]), np.array([0.0, 0.7])
+        (7.0, 7.0),
+        (0.24, 0.3, 0.127),
+        0.3,
+        np.array([[0.42, 0.0, 0.2], [0.3, 0.3, 0.9]]),
+        np.array([0.0, 0.7]),
     )
     task = place_task(who, frame, box, (1.3, 1.3), grid)
     assembler = spatial_assembler(spatial_library(), grid)

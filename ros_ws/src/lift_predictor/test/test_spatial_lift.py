@@ -109,8 +109,9 @@ def test_motion_and_forces_balance_on_the_skeleton(solved, spatial, subject) -> 
             np.testing.assert_allclose(points[name], motion.point(name)[i], atol=1e-9)
     rates = np.gradient(motion.position, motion.time, axis=0)
     np.testing.assert_allclose(rates[2:-2], motion.velocity[2:-2], atol=0.05)
-    speeds = np.gradient(motion.velocity, motion.time, axis=0)
-    np.testing.assert_allclose(speeds[2:-2], motion.acceleration[2:-2], atol=2.0)
+    speeds = np.diff(motion.velocity, axis=0) / np.diff(motion.time)[:, None]
+    mean = 0.5 * (motion.acceleration[:-1] + motion.acceleration[1:])
+    np.testing.assert_allclose(speeds, mean, atol=2.0)
 
 
 def test_motion_meets_the_task(solved, lift, spatial, subject) -> None:

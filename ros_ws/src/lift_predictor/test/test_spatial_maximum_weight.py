@@ -27,7 +27,7 @@ from lift_predictor.core.problem.task_solver import TaskSolver
 
 @pytest.fixture(scope='module')
 def spatial() -> TaskSolver[SpatialTask]:
-    options = PredictorOptions(n_control=6, n_nodes=13, basin_hops=0, refinements=5)
+    options = PredictorOptions(n_control=6, n_nodes=21, basin_hops=0, refinements=5)
     return LiftPredictor(options).spatial
 
 

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from human_model.constants import GRAVITY
 from human_model.skeleton import ExternalForce
 from human_model.subject import Subject
+from lift_predictor.core.models.passive import passive_hip_moment
 from lift_predictor.core.models.spatial.assembly import spatial_library
 from lift_predictor.core.models.spatial.coordinates import skeleton_motion
 from lift_predictor.core.models.spatial.evaluation import evaluate
@@ -39,7 +40,8 @@ def placed(who: SpatialPerson, half=0.15, ahead=0.02, turns=(-0.14, 0.2)) -> Spa
         **who.fields(),
         ankle=np.array([[-ahead, -half, height], [ahead, half, height]]),
         foot_turn=np.array(turns),
-        box_radius=0.119,
+        box_half=np.array([0.119, 0.1525, 0.0635]),
+        box_acceleration=1e3,
         box_width=WIDTH,
         box_turning=0.13,
         box_from_hand=np.array([0.02, 0.0, 0.03]),
@@ -139,6 +141,12 @@ def test_torques_and_limits_are_those_of_the_skeleton(who) -> None:
     full = skeleton_motion(*motion, parameters, skeleton.coordinates)
     columns = [skeleton.index(name) for name in STRONG]
     low, high = who.strength.limit_arrays(skeleton.coordinates, full[0], full[1])
+    for side in SIDES:
+        hip = skeleton.index(f'hip_flexion_{side}')
+        knee = full[0][:, skeleton.index(f'knee_angle_{side}')]
+        passive = passive_hip_moment(full[0][:, hip], knee, np.exp)
+        low[:, hip] += passive
+        high[:, hip] += passive
     np.testing.assert_allclose(loads.lower, low[:, columns], atol=1e-9)
     np.testing.assert_allclose(loads.upper, high[:, columns], atol=1e-9)
     for i in range(6):

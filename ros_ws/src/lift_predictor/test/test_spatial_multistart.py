@@ -19,7 +19,7 @@ from lift_predictor.core.problem.run import SolverRun, Start
 from lift_predictor.core.problem.task_solver import TaskSolver
 from lift_predictor.core.solvers.solution import Solution, Status
 
-GRID = SpatialGrid(7, 25)
+GRID = SpatialGrid(10, 25, 'acceleration')
 SHAPE = (GRID.spline.n_free, N_SPLINED)
 
 

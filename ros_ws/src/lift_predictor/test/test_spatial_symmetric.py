@@ -83,8 +83,8 @@ def test_model_agrees_with_the_sagittal_one(who, person, parameters, planar, pre
     parts = motion.position, motion.velocity, motion.acceleration
     q, dq, ddq = (np.array(part[:, index]) for part in parts)
     places = np.array([[0.4, 0.0, 0.1], [0.4, 0.0, 1.0]])
-    box = PlacedBox((7.0, 7.0), 0.238, 2.0 * who.arm[0], places, np.zeros(2))
-    task = place_task(who, upright(who), box, (1.2, 1.2), SpatialGrid(7, 25))
+    box = PlacedBox((7.0, 7.0), (0.238, 0.305, 0.127), 2.0 * who.arm[0], places, np.zeros(2))
+    task = place_task(who, upright(who), box, (1.2, 1.2), SpatialGrid(10, 25, 'acceleration'))
     # Feet without the inward lean, which the plane has no place for.
     spatial_parameters = replace(task.parameters, inward_lean=0.0)
     three = evaluate(
@@ -133,9 +133,9 @@ def test_symmetric_optimum_is_the_sagittal_one(
     who: SpatialPerson, person: Person, parameters, predictor
 ) -> None:
     """Where only the sagittal joints move and the criterion is the same, so is the optimum."""
-    grid, width = SpatialGrid(7, 25), 2.0 * who.arm[0]
+    grid, width = SpatialGrid(10, 25, 'acceleration'), 2.0 * who.arm[0]
     begin, finish = np.array([0.4, 0.0, 0.35]), np.array([0.45, 0.0, 0.95])
-    box = PlacedBox((7.0, 7.0), 0.0, width, np.array([begin, finish]), np.zeros(2))
+    box = PlacedBox((7.0, 7.0), (0.0, 0.0, 0.0), width, np.array([begin, finish]), np.zeros(2))
     task = place_task(who, upright(who), box, (1.2, 1.2), grid)
     spatial_parameters = with_criterion_of_the_plane(task.parameters, person)
     # The sagittal box may go anywhere when it has no size.
@@ -168,7 +168,8 @@ def test_symmetric_optimum_is_the_sagittal_one(
         person.angle_lower, person.angle_upper, *anywhere,
         np.array([begin[[0, 2]], finish[[0, 2]]]), np.array([7.0, 7.0]),
     )  # fmt: skip
-    flat_parameters = replace(parameters, circle=np.zeros_like(parameters.circle), box_radius=0.0)
+    circle = np.zeros_like(parameters.circle)
+    flat_parameters = replace(parameters, circle=circle, box_half=np.zeros(2))
     plane, ends = SagittalPlane(0.0, 0.0), np.stack((first, last))
     flat_task = SagittalTask('same', 0.0, person, plane, None, flat_parameters, bounds, ends, ())
     flat = predictor.sagittal.run(flat_task, Start('same', start, 7.0))

@@ -25,7 +25,8 @@ class RestToRestSpline:
     Zero slope at both ends of a clamped spline means that the first two control points are equal,
     and the last two: they are merged, so that equation 4.7 holds exactly and `n_control - 2`
     values per joint remain. Zero curvature as well means that the first three are equal, and the
-    last three: `n_control - 4` remain.
+    last three: `n_control - 4` remain. The first and last piece are then half as long as the
+    others, so that the lift does not dwell at its ends.
 
     Parameters
     ----------
@@ -67,8 +68,11 @@ class RestToRestSpline:
 
     @property
     def knots(self) -> Array:
-        """Clamped uniform knot vector, shape (n_control + 4,)."""
+        """Clamped knot vector, shape (n_control + 4,)."""
         inner = np.linspace(0.0, 1.0, self.n_spans + 1)
+        if self.rest == 'acceleration':
+            whole = np.arange(self.n_spans - 1) + 0.5
+            inner = np.concatenate(([0.0], whole, [self.n_spans - 1.0])) / (self.n_spans - 1)
         return np.concatenate((np.zeros(DEGREE), inner, np.ones(DEGREE)))
 
     def basis(self, s: Array, derivative: int = 0) -> Array:
@@ -156,19 +160,21 @@ def _basis(knots: Array, degree: int, s: Array, derivative: int) -> Array:
     return np.asarray(rising + falling)
 
 
-def require_nodes(n_control: int, n_nodes: int) -> None:
-    """Refuse numbers of control points and time nodes that do not fit.
+def require_nodes(spline: RestToRestSpline, n_nodes: int) -> None:
+    """Refuse a number of time nodes that does not fit a spline: two intervals in each piece.
 
     Raises
     ------
     SplineError
-        `n_nodes` is not 2 (n_control - 3) k + 1.
+        `n_nodes` is not m k + 1, where m is 2 (n_control - 3), and 4 (n_control - 4) with rest in
+        acceleration.
     """
-    spans = RestToRestSpline(n_control).n_spans
-    if n_nodes < 2 * spans + 1 or (n_nodes - 1) % (2 * spans):
+    spans = spline.n_spans
+    least = 4 * (spans - 1) if spline.rest == 'acceleration' else 2 * spans
+    if n_nodes < least + 1 or (n_nodes - 1) % least:
         raise SplineError(
-            f'n_nodes = {n_nodes}: with n_control = {n_control}, '
-            f'{2 * spans} k + 1 nodes are needed'
+            f'n_nodes = {n_nodes}: with n_control = {spline.n_control} and rest in {spline.rest}, '
+            f'{least} k + 1 nodes are needed'
         )
 
 

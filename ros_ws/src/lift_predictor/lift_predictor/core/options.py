@@ -10,8 +10,6 @@ from typing import Final
 
 import numpy as np
 
-from lift_predictor.core.exceptions import TaskError
-
 SAGITTAL: Final = 'sagittal'
 SPATIAL: Final = 'spatial'
 MODELS: Final = {'2d': SAGITTAL, '3d': SPATIAL}
@@ -19,7 +17,6 @@ MODELS: Final = {'2d': SAGITTAL, '3d': SPATIAL}
 COEFFICIENT_SET: Final = 'anderson2007_nonneg'
 POSTURE_TOLERANCE: Final = 0.15
 """Epsilon of equation 4.8 [rad]."""
-_SAGITTAL_ONLY: Final = "static_ends: 'acceleration' is known in the sagittal plane only"
 
 
 @dataclass(frozen=True)
@@ -66,7 +63,7 @@ class PredictorOptions:
         Solves with a margin at most, where the dense grid shows a violation.
     static_ends : str
         Derivative that is zero at start and end: 'velocity' (equation 4.7), or 'acceleration' as
-        well, with `MORE_CONTROL` more control points; sagittal model only.
+        well, with `MORE_CONTROL` more control points.
     dimension : str
         '2d', '3d', or 'auto': asymmetric lifts on the 3D skeleton are predicted by the spatial
         model.
@@ -74,17 +71,12 @@ class PredictorOptions:
         Distance from a recorded lift; spatial model.
     basin_hops : int
         Runs from the best solution, displaced, in search of a better one; spatial model.
-
-    Raises
-    ------
-    TaskError
-        Rest in acceleration with the spatial model.
     """
 
     SPATIAL_TIME_LIMIT: Final = 30.0
-    MORE_CONTROL: Final = 2
-    """Control points more with rest in acceleration, which merges one more at each end: as many
-    values remain free."""
+    MORE_CONTROL: Final = 3
+    """Control points more with rest in acceleration, which merges one more at each end and needs
+    one more piece: one value more remains free."""
 
     n_control: int = 7
     n_nodes: int = 25
@@ -92,15 +84,15 @@ class PredictorOptions:
     coefficient_set: str = COEFFICIENT_SET
     time_limit: float = 10.0
     refinements: int = 6
-    static_ends: str = 'velocity'
+    static_ends: str = 'acceleration'
     dimension: str = 'auto'
     windows: Windows = field(default_factory=Windows)
     basin_hops: int = 3
 
-    def __post_init__(self) -> None:
-        """Refuse a combination that does not fit."""
-        if self.dimension == '3d' and self.static_ends != 'velocity':
-            raise TaskError(f"{_SAGITTAL_ONLY}, and dimension is '3d'")
+    @property
+    def spline_control(self) -> int:
+        """Control points per joint with those that the rest at the ends takes."""
+        return self.n_control + (self.MORE_CONTROL if self.static_ends == 'acceleration' else 0)
 
 
 def choose_model(
@@ -116,16 +108,7 @@ def choose_model(
         Returns the reason why the lift does not fit the sagittal model; empty: it fits.
     spatial_data : bool
         Whether the data suffice for the spatial model.
-
-    Raises
-    ------
-    TaskError
-        The lift needs the spatial model, and rest in acceleration is asked for.
     """
     if options.dimension in MODELS:
         return MODELS[options.dimension]
-    if not spatial_data or not (reason := asymmetry()):
-        return SAGITTAL
-    if options.static_ends != 'velocity':
-        raise TaskError(f'{reason}; {_SAGITTAL_ONLY}')
-    return SPATIAL
+    return SPATIAL if spatial_data and asymmetry() else SAGITTAL

@@ -25,8 +25,8 @@ class TimeGrid(ABC):
         Control points per coordinate.
     n_nodes : int
         Uniform time nodes of the constraints, and of Simpson's rule for the effort: an even number
-        of intervals in each spline piece, and so 2 (n_control - 3) k + 1 nodes. With fewer the
-        solver finds motions that violate the constraints between the nodes.
+        of intervals in each spline piece (`bspline.require_nodes`). With fewer the solver finds
+        motions that violate the constraints between the nodes.
     rest : str
         Derivative that is zero at both ends: 'velocity' (equation 4.7), or 'acceleration' as well.
 
@@ -46,8 +46,7 @@ class TimeGrid(ABC):
 
     def __post_init__(self) -> None:
         """Refuse numbers that do not fit."""
-        require_nodes(self.n_control, self.n_nodes)
-        _ = self.spline
+        require_nodes(self.spline, self.n_nodes)
 
     @cached_property
     def spline(self) -> RestToRestSpline:

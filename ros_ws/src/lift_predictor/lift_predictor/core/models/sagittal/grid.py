@@ -14,7 +14,6 @@ from human_model.typing import Array
 from lift_predictor.core.models.sagittal.parameters import (
     BODIES,
     CIRCLE_BODIES,
-    CIRCLES_PER_BODY,
     JOINTS,
     N_JOINTS,
     N_SCALARS,
@@ -28,12 +27,10 @@ NODE_CONSTRAINTS: Final = (
     *(f'joint torque limit (4.2) of {joint}' for joint in JOINTS),
     'balance (4.3) at the rear edge of the foot support region',
     'balance (4.3) at the front edge of the foot support region',
-    *(
-        f'collision (4.5) of the box with the {body}'
-        for body in CIRCLE_BODIES
-        for _ in range(CIRCLES_PER_BODY)
-    ),
+    *(f'collision (4.5) of the box with the {body}' for body in CIRCLE_BODIES),
     'height of the box over the lower of its places',
+    'hip flexion with the knee so far extended (hamstrings)',
+    'acceleration of the box',
 )
 NODE_UPPER: Final = (1.0,) * N_JOINTS + (float('inf'),) * (len(NODE_CONSTRAINTS) - N_JOINTS)
 """Upper bounds of the node constraints; all lower bounds are 0."""

@@ -12,6 +12,8 @@ from lift_predictor.core.models.sagittal.grid import CENTRES, HAND_SCALE, N_NODE
 from lift_predictor.core.models.sagittal.model import chain_state, torque_limits
 from lift_predictor.core.models.sagittal.parameters import (
     BODIES,
+    HIP,
+    KNEE,
     N_JOINTS,
     N_PARAMETERS,
     N_SCALARS,
@@ -31,7 +33,7 @@ def kernel_functions() -> list[NodeFunction]:
     Effort is the integrand of the first term of equation 2.11, over the six joints above the feet
     (no strength of the metatarsophalangeal joint is published). Constraints are scaled to order 1:
     torques are 0 at the lower and 1 at the upper dynamic limit, balance is divided by weight times
-    foot length, collision by the squared sum of the radii, height by `HAND_SCALE`.
+    foot length, height by `HAND_SCALE`, the box's squared acceleration by its largest one.
     """
     p = ca.SX.sym('p', N_PARAMETERS)
     z, q = ca.SX.sym('z', N_NODE), ca.SX.sym('q', N_JOINTS)
@@ -78,6 +80,8 @@ def _instant(q: Any, dq: Any, ddq: Any, s: Any, p: Any) -> dict[str, Any]:
             (front * vertical - state.ground_moment) / scale,
             state.clearance,
             (state.position['hand'][1] - blocks['lowest_grip'][0][0]) / HAND_SCALE,
+            blocks['hip_range'][0][0] + blocks['hip_range'][0][1] * q[KNEE] - q[HIP],
+            1.0 - ca.sumsqr(state.acceleration['hand']) / blocks['box_acceleration'][0][0] ** 2,
         ),
         'centres': ca.vertcat(*(state.position[name] for name in CENTRES)),
         'segment_angle': ca.vertcat(*(state.angle[name][0] for name in BODIES)),

@@ -11,10 +11,13 @@ import numpy as np
 
 from human_model.typing import Array
 from lift_predictor.core.least_squares import minimise
+from lift_predictor.core.models.contact import gaps
+from lift_predictor.core.models.ranges import hamstring_room
 from lift_predictor.core.models.sagittal.parameters import (
     BODIES,
     CIRCLE_BODIES,
-    CIRCLES_PER_BODY,
+    HIP,
+    KNEE,
     LiftParameters,
 )
 from lift_predictor.core.planning.postures import POSTURE_WEIGHT, REACHED
@@ -32,9 +35,11 @@ class ChainPositions:
         Segment angles [rad], counter-clockwise from upright standing.
     box : array, shape (n, 2)
         Box centre.
-    gaps : array, shape (n, 12)
-        Distance of the box centre from each collision circle's centre less both radii (equation
-        4.5) [m]; infinite for an unused circle.
+    gaps : array, shape (n, 18)
+        Distance of the box from each collision circle (equation 4.5) [m]; infinite for an unused
+        circle.
+    hamstrings : array, shape (n,)
+        Flexion of the hip that is left [rad].
     centre_of_mass : array, shape (n,)
         Of body and box, forward.
     """
@@ -43,6 +48,7 @@ class ChainPositions:
     angles: dict[str, Array]
     box: Array
     gaps: Array
+    hamstrings: Array
     centre_of_mass: Array
 
 
@@ -83,18 +89,18 @@ def chain_positions(
         'upper_arm': shoulder, 'forearm': elbow,
     }  # fmt: skip
     box = (hand if grip is None else grip) + parameters.box_from_hand
-    gaps = np.full((len(q), len(parameters.circle)), np.inf)
-    for index, (x, y, radius) in enumerate(parameters.circle):
-        if radius > 0.0:
-            name = CIRCLE_BODIES[index // CIRCLES_PER_BODY]
-            centre = origin[name] + turned(name, np.array([x, y]))
-            distance = np.linalg.norm(box - centre, axis=1)
-            gaps[:, index] = distance - radius - parameters.box_radius
+    centres = [
+        origin[name] + turned(name, row[:2])
+        for name, row in zip(CIRCLE_BODIES, parameters.circle, strict=True)
+    ]
+    offset = np.stack(centres, axis=1) - box[:, None]
+    free = gaps(offset, parameters.box_half, parameters.circle[:, 2])
     moment = parameters.box_mass * hand[:, 0]
     for name in BODIES:
         centre = origin[name] + turned(name, body[name][1:3])
         moment = moment + body[name][0] * centre[:, 0]
-    return ChainPositions(joints, angles, box, gaps, moment / parameters.total_mass)
+    room = hamstring_room(q[:, HIP], q[:, KNEE], parameters.hip_range)
+    return ChainPositions(joints, angles, box, free, room, moment / parameters.total_mass)
 
 
 def reach(
@@ -128,7 +134,8 @@ def reach(
         state = chain_positions(q, parameters)
         forward = state.centre_of_mass
         unbalanced = np.maximum(np.maximum(rear - forward, forward - front), 0.0)
-        wishes = np.column_stack((np.minimum(state.gaps, 0.0), unbalanced))
+        beyond = np.minimum(state.hamstrings, 0.0)
+        wishes = np.column_stack((np.minimum(state.gaps, 0.0), unbalanced, beyond))
         apart = state.joints['hand'] - grip
         return np.hstack((apart, secondary * wishes, POSTURE_WEIGHT * (q - reference)))
 

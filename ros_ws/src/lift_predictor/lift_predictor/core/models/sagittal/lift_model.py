@@ -93,9 +93,8 @@ class SagittalModel(LiftModel[SagittalTask]):
     ) -> None:
         self.options = options = options or PredictorOptions()
         self.stop = stop
-        more = options.MORE_CONTROL if options.static_ends == 'acceleration' else 0
         self.grid = grid or SagittalGrid(
-            options.n_control + more, options.n_nodes, options.static_ends
+            options.spline_control, options.n_nodes, options.static_ends
         )
         self.library = sagittal_library()
         self.method = SolveMethod(

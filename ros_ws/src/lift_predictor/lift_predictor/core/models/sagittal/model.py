@@ -15,10 +15,13 @@ from typing import Any
 
 import casadi as ca
 
+from lift_predictor.core.models.contact import clearance
+from lift_predictor.core.models.passive import passive_hip_moment
 from lift_predictor.core.models.sagittal.parameters import (
     BODIES,
     CIRCLE_BODIES,
-    CIRCLES_PER_BODY,
+    HIP,
+    KNEE,
     unpack,
 )
 
@@ -55,8 +58,8 @@ def chain_state(q: Any, dq: Any, ddq: Any, s: Any, p: Any) -> ChainState:
         `torque` (6): generalised forces of the joints, both limbs together [N m]. `ground_force`
         (2): force of the ground [N]; `ground_moment`: its moment about the point of the ground
         below the laboratory's origin, so that the zero-moment point is moment / vertical force.
-        `hand_force` (2): force of the box on both hands [N]. `clearance`: (d / (r1 + r2))^2 - 1 of
-        equation 4.5 for each collision circle; positive means clear, 1 for an unused circle.
+        `hand_force` (2): force of the box on both hands [N]. `clearance`: `contact.clearance` of
+        each collision circle (4.5); positive means clear, 1 for an unused circle.
     """
     blocks = unpack(p)
     body = {name: blocks['body'][i] for i, name in enumerate(BODIES)}
@@ -169,10 +172,16 @@ def strength(q: Any, v: Any, coefficients: list[Any]) -> Any:
 
 
 def torque_limits(q: Any, dq: Any, p: Any) -> tuple[Any, Any]:
-    """Lower and upper dynamic torque limits (equations 2.18 and 2.15) [N m], 6 x 1 each."""
+    """Lower and upper limits of the net torques [N m], 6 x 1 each.
+
+    The dynamic limits of equations 2.18 and 2.15, and the passive moment of both hips.
+    """
     blocks = unpack(p)
     lower = [strength(q[i], dq[i], row) for i, row in enumerate(blocks['strength_lower'])]
     upper = [strength(q[i], dq[i], row) for i, row in enumerate(blocks['strength_upper'])]
+    passive = 2.0 * passive_hip_moment(q[HIP], q[KNEE], ca.exp)
+    lower[HIP] += passive
+    upper[HIP] += passive
     return ca.vertcat(*lower), ca.vertcat(*upper)
 
 
@@ -198,12 +207,13 @@ def _clearance(
 ) -> Any:
     box = position['hand'] + ca.vertcat(*blocks['box_from_hand'][0])
     rows = []
-    for index, (x, y, radius) in enumerate(blocks['circle']):
-        segment = CIRCLE_BODIES[index // CIRCLES_PER_BODY]
+    table = zip(CIRCLE_BODIES, blocks['circle'], blocks['semi_axes'], strict=True)
+    for segment, (x, y, radius), axes in table:
         offset, _ = _rotating([x, y], angle[segment])
-        gap = box - (position[origin[segment]] + offset)
+        gap = position[origin[segment]] + offset - box
         used = radius > 0.0
-        reach = ca.if_else(used, radius + blocks['box_radius'][0][0], 1.0)
+        lengths = [ca.if_else(used, axis, 1.0) for axis in axes]
         # An unused circle reads "clear" whatever the posture.
-        rows.append(ca.if_else(used, ca.sumsqr(gap) / reach**2 - 1.0, 1.0))
+        clear = clearance([gap[0], gap[1]], lengths, ca.sqrt)
+        rows.append(ca.if_else(used, clear, 1.0))
     return ca.vertcat(*rows)

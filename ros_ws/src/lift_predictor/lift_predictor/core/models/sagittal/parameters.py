@@ -10,6 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from human_model.typing import Array
+from lift_predictor.core.models.contact import semi_axes
 from lift_predictor.core.parameter_vector import pack_blocks, unpack_blocks
 
 JOINTS: Final = (
@@ -26,11 +27,17 @@ BODIES: Final = ('foot', 'shank', 'thigh', 'pelvis', 'trunk', 'upper_arm', 'fore
 """Segments from the ground up; paired ones count both sides. The trunk carries the head, the
 forearm the hand."""
 
-CIRCLE_BODIES: Final = ('shank', 'thigh', 'pelvis', 'trunk')
-"""Segments that carry collision circles."""
-CIRCLES_PER_BODY: Final = 3
+CIRCLE_BODIES: Final = (
+    *('foot',) * 4,
+    *('shank',) * 6,
+    *('thigh',) * 4,
+    *('pelvis',) * 2,
+    *('trunk',) * 2,
+)
+"""Segment of each collision circle, in the order of `collision_circles.csv`."""
 
 N_JOINTS: Final = len(JOINTS)
+HIP, KNEE = JOINTS.index('hip_flexion'), JOINTS.index('knee_angle')
 N_BODY: Final = 6
 N_STRENGTH: Final = 8
 N_CIRCLE: Final = 3
@@ -39,13 +46,15 @@ SHAPES: Final[dict[str, tuple[int, int]]] = {
     'body': (len(BODIES), N_BODY),
     'strength_lower': (N_JOINTS, N_STRENGTH),
     'strength_upper': (N_JOINTS, N_STRENGTH),
-    'circle': (len(CIRCLE_BODIES) * CIRCLES_PER_BODY, N_CIRCLE),
+    'circle': (len(CIRCLE_BODIES), N_CIRCLE),
+    'semi_axes': (len(CIRCLE_BODIES), 2),
+    'hip_range': (1, 2),
     'ankle': (1, 2),
     'support': (1, 2),
     'ground_height': (1, 1),
     'gravity': (1, 1),
     'duration': (1, 1),
-    'box_radius': (1, 1),
+    'box_acceleration': (1, 1),
     'box_from_hand': (1, 2),
     'lowest_grip': (1, 1),
     'objective': (1, 2),
@@ -72,9 +81,12 @@ class LiftParameters:
     strength_lower, strength_upper : array, shape (6, 8)
         Coefficients of equations 2.14 and 2.17 per joint in its own coordinate, [N m], z-score and
         both limbs included; the lower ones give a negative torque.
-    circle : array, shape (12, 3)
-        Three circles on each of `CIRCLE_BODIES`: centre in the segment frame (forward, up) [m],
-        radius [m]. A radius that is not positive switches the circle off.
+    circle : array, shape (18, 3)
+        Circles on `CIRCLE_BODIES`: centre in the segment frame (forward, up) [m], radius [m]. A
+        radius that is not positive switches the circle off.
+    hip_range : array, shape (2,)
+        Largest flexion of the hip with a straight knee [rad], and its rise per flexion of the
+        knee.
     ankle : array, shape (2,)
         Ankle in the laboratory [m]; the feet are flat and do not move.
     support : array, shape (2,)
@@ -83,8 +95,10 @@ class LiftParameters:
         [m], [m/s^2], [s].
     box_mass : float
         Mass in the hands [kg]; a variable of the programme, and so no part of the vector.
-    box_radius : float
-        Half depth of the box [m] (r2 of equation 4.5).
+    box_half : array, shape (2,)
+        Half depth and half height of the box [m], in place of r2 of equation 4.5.
+    box_acceleration : float
+        Largest acceleration of the box [m/s^2].
     box_from_hand : array, shape (2,)
         Box centre minus grip [m]; the box stays level.
     lowest_grip : float
@@ -98,13 +112,15 @@ class LiftParameters:
     strength_lower: Array
     strength_upper: Array
     circle: Array
+    hip_range: Array
     ankle: Array
     support: Array
     ground_height: float
     gravity: float
     duration: float
     box_mass: float
-    box_radius: float
+    box_half: Array
+    box_acceleration: float
     box_from_hand: Array
     lowest_grip: float
     objective: Array = field(default_factory=lambda: np.array([1.0, 0.0]))
@@ -118,6 +134,11 @@ class LiftParameters:
             A field of the wrong shape or a value that is not finite.
         """
         return pack_blocks(self, SHAPES)
+
+    @property
+    def semi_axes(self) -> Array:
+        """Semi-axes of the box grown by each circle's radius, shape (18, 2) [m]."""
+        return semi_axes(self.box_half, self.circle[:, 2])
 
     @property
     def total_mass(self) -> float:

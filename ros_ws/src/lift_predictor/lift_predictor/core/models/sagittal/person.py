@@ -16,13 +16,12 @@ from human_model.strength import JointStrength
 from human_model.subject import Subject
 from human_model.tables import read_table
 from human_model.typing import Array
+from lift_predictor.core.models.ranges import hip_range, ranges
 from lift_predictor.core.models.sagittal.parameters import (
     BODIES,
     CIRCLE_BODIES,
-    CIRCLES_PER_BODY,
     JOINTS,
     N_BODY,
-    N_CIRCLE,
 )
 from lift_predictor.core.models.strength_rows import strength_rows
 from lift_predictor.core.options import COEFFICIENT_SET
@@ -36,6 +35,8 @@ _ENDS = {
     'forearm': ('elbow_r', 'hand_r'),
 }
 """Origin and next joint of each segment, as points of the skeleton."""
+_LINES = _ENDS | {'foot': ('ankle_r', 'toe_r')}
+"""Lines on which the collision circles are."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,10 +57,10 @@ class Person:
         As in `LiftParameters`.
     mtp_limits : array, shape (2,)
         Fixed torque bounds of the metatarsophalangeal joints [N m] (no strength is published).
-    circle : array, shape (12, 3)
-        As `LiftParameters.circle`.
+    circle, hip_range : array
+        As in `LiftParameters`.
     angle_lower, angle_upper : array, shape (6,)
-        Joint limits [rad].
+        Joint limits [rad]: those of the skeleton, and narrower ranges of people.
     gravity : float
         [m/s^2].
     """
@@ -74,6 +75,7 @@ class Person:
     circle: Array
     angle_lower: Array
     angle_upper: Array
+    hip_range: Array
     gravity: float = GRAVITY
 
     @classmethod
@@ -104,6 +106,9 @@ class Person:
         strength = JointStrength(skeleton.name, subject, coefficient_set)
         neutral = skeleton.points(skeleton.standing())
         limits = np.array([skeleton.limits[skeleton.index(joint)] for joint in JOINTS])
+        for joint, (low, high) in ranges(skeleton.name).items():
+            row = limits[JOINTS.index(joint)]
+            row[:] = max(row[0], low), min(row[1], high)
         return cls(
             subject=subject,
             skeleton=skeleton,
@@ -115,6 +120,7 @@ class Person:
             circle=_circles(subject, neutral),
             angle_lower=limits[:, 0],
             angle_upper=limits[:, 1],
+            hip_range=np.array(hip_range()),
         )
 
     @property
@@ -147,17 +153,15 @@ def _bodies(skeleton: Skeleton2D, neutral: dict[str, Array]) -> Array:
 
 def _circles(subject: Subject, neutral: dict[str, Array]) -> Array:
     dimensions = body_dimensions(subject.sex, subject.stature, subject.mass)
-    circle = np.zeros((len(CIRCLE_BODIES) * CIRCLES_PER_BODY, N_CIRCLE))
-    used = dict.fromkeys(CIRCLE_BODIES, 0)
+    circles = []
+    bodies: list[str] = []
     columns = 'body along dimension divisor'
     for line in read_table('lift_predictor', 'collision_circles.csv', columns):
         name, size = line['body'], line.choice('dimension', dimensions)
-        if used.get(name, CIRCLES_PER_BODY) == CIRCLES_PER_BODY:
-            bodies = ', '.join(CIRCLE_BODIES)
-            raise line.error('body', f'{CIRCLES_PER_BODY} circles for each of {bodies} are needed')
-        origin, end = _ENDS[name]
+        origin, end = line.choice('body', _LINES)
         centre = line.number('along') * (neutral[end] - neutral[origin])
-        row = CIRCLE_BODIES.index(name) * CIRCLES_PER_BODY + used[name]
-        circle[row] = (centre[0], centre[2], size / line.number('divisor'))
-        used[name] += 1
-    return circle
+        circles.append((centre[0], centre[2], size / line.number('divisor')))
+        bodies.append(name)
+        if tuple(bodies) != CIRCLE_BODIES[: len(bodies)]:
+            raise line.error('body', f'the circles are in the order {", ".join(CIRCLE_BODIES)}')
+    return np.array(circles)

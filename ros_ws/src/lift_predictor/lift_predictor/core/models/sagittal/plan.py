@@ -21,6 +21,7 @@ from lift_predictor.core.planning.plan_task import Feet, PlanTask
 from lift_predictor.core.planning.postures import HIGH_GUESSES, LOW_GUESSES, Posture
 from lift_predictor.core.planning.technique import FREE, technique
 from lift_predictor.core.problem.model import Plan
+from lift_predictor.core.problem.task import largest_acceleration
 from lift_predictor.core.solvers.stop import StopFlag
 
 SAME_POSTURE: Final = 0.02
@@ -98,13 +99,15 @@ def plan_parameters(person: Person, task: PlanTask, ankle: float) -> LiftParamet
         strength_lower=person.strength_lower,
         strength_upper=person.strength_upper,
         circle=person.circle,
+        hip_range=person.hip_range,
         ankle=np.array([ankle, person.ankle_height]),
         support=ankle + np.array(edges),
         ground_height=0.0,
         gravity=person.gravity,
         duration=task.duration,
         box_mass=0.0 if task.box_mass is None else task.box_mass,
-        box_radius=0.5 * task.box_size[0],
+        box_half=0.5 * np.array([task.box_size[0], task.box_size[2]]),
+        box_acceleration=largest_acceleration(_grips(task), task.duration),
         box_from_hand=np.array(task.box_from_grip),
         lowest_grip=lowest_grip(_grips(task)),
     )

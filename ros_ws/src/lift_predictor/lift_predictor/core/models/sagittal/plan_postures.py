@@ -49,7 +49,13 @@ def find_posture(
         if index is not None:
             style = off_technique(*lowering(q, person, parameters), index)
         return np.column_stack(
-            (state.joints['hand'] - grip, np.minimum(state.gaps, 0.0), outside, style)
+            (
+                state.joints['hand'] - grip,
+                np.minimum(state.gaps, 0.0),
+                np.minimum(state.hamstrings, 0.0),
+                outside,
+                style,
+            )
         )
 
     q, rest = nearest_posture(errors, np.radians(GUESSES[guess]), lower, upper)
@@ -57,8 +63,8 @@ def find_posture(
         guess,
         q,
         distance=float(np.linalg.norm(rest[:2])),
-        depth=float(-rest[2:-2].min(initial=0.0)),
-        unbalanced=float(rest[-2]),
+        depth=float(-rest[2:-3].min(initial=0.0)),
+        unbalanced=float(max(rest[-2], -rest[-3])),
         off_technique=float(rest[-1]),
     )
 

@@ -14,13 +14,15 @@ from human_model.motion import BodyMotion, Lift
 from human_model.task import Box
 from human_model.typing import Array
 from lift_predictor.core.exceptions import TaskError, UnreachableError
+from lift_predictor.core.models.ranges import hamstring_room
 from lift_predictor.core.models.sagittal.grid import LiftBounds
 from lift_predictor.core.models.sagittal.kinematics import chain_positions, reach
-from lift_predictor.core.models.sagittal.parameters import JOINTS, LiftParameters
+from lift_predictor.core.models.sagittal.parameters import HIP, JOINTS, KNEE, LiftParameters
 from lift_predictor.core.models.sagittal.person import Person
 from lift_predictor.core.models.sagittal.plane import SagittalMotion, SagittalPlane, SideView
 from lift_predictor.core.options import POSTURE_TOLERANCE
 from lift_predictor.core.planning.postures import REACHED
+from lift_predictor.core.problem.task import NO_BOX, largest_acceleration
 
 PLACE_ALLOWANCE: Final = 1e-3
 """How far below the lower of its places the box may be carried [m]: what motion capture resolves;
@@ -131,22 +133,26 @@ def build_task(
         raise TaskError(reason)
     ankle, support = _feet(motion, plane)
     from_hand = _box_from_hand(motion, plane, measured)
+    person, beyond = _with_range(person, measured)
     parameters = LiftParameters(
         body=person.body,
         strength_lower=person.strength_lower,
         strength_upper=person.strength_upper,
         circle=person.circle if box.depth > 0.0 else np.zeros_like(person.circle),
+        hip_range=person.hip_range,
         ankle=ankle,
         support=support,
         ground_height=float(ankle[1] - person.ankle_height),
         gravity=person.gravity,
         duration=duration,
         box_mass=box.mass,
-        box_radius=0.5 * box.depth,
+        box_half=0.5 * np.array([box.size[0], box.size[2]]),
+        box_acceleration=NO_BOX,
         box_from_hand=from_hand,
         lowest_grip=float(ankle[1] - person.ankle_height),
     )
-    parameters, notes = _fit_circles(parameters, measured)
+    parameters, closer = _fit_circles(parameters, measured)
+    notes = (*beyond, *closer)
     postures = np.stack([np.interp(instants, measured.time, column) for column in measured.q.T], 1)
     hand = np.stack([_at(measured, measured.grip, t) for t in instants[[0, 2]]])
     for row, place in enumerate((box.start, box.end)):
@@ -154,7 +160,11 @@ def build_task(
             asked = plane.into(np.asarray(place, dtype=float)) - from_hand
             hand[row] += fraction * (asked - hand[row])
     if box.mass > 0.0 or box.depth > 0.0:
-        parameters = replace(parameters, lowest_grip=lowest_grip(hand))
+        parameters = replace(
+            parameters,
+            lowest_grip=lowest_grip(hand),
+            box_acceleration=largest_acceleration(hand, duration),
+        )
     bounds = _bounds(person, postures, tolerance, hand, box.mass)
     ends = _reachable_ends(bounds, postures, parameters)
     return SagittalTask(
@@ -248,6 +258,30 @@ def _box_from_hand(motion: BodyMotion, plane: SagittalPlane, measured: SagittalM
     if not tracked.any():
         return np.zeros(2)
     return np.asarray((box - measured.grip)[tracked].mean(axis=0))
+
+
+def _with_range(person: Person, measured: SagittalMotion) -> tuple[Person, tuple[str, ...]]:
+    """Widen the ranges of motion that the recorded lift itself exceeded: this person has more."""
+    low = np.minimum(person.angle_lower, measured.q.min(axis=0))
+    known = [person.skeleton.limits[person.skeleton.index(joint)][0] for joint in JOINTS]
+    low = np.maximum(low, known)
+    room = hamstring_room(measured.q[:, HIP], measured.q[:, KNEE], person.hip_range)
+    more = max(-float(room.min()), 0.0)
+    wider = {
+        joint: float(np.degrees(amount))
+        for joint, amount in zip(JOINTS, person.angle_lower - low, strict=True)
+        if amount > 0.0
+    }
+    if more > 0.0:
+        wider['hip_flexion with the knee'] = float(np.degrees(more))
+    if not wider:
+        return person, ()
+    notes = tuple(
+        f'the range of {name} is {amount:.0f} deg wider than published, as recorded'
+        for name, amount in wider.items()
+    )
+    hip = person.hip_range + np.array([more, 0.0])
+    return replace(person, angle_lower=low, hip_range=hip), notes
 
 
 def _fit_circles(

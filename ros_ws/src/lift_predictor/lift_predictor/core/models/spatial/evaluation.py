@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from human_model.typing import Array
+from lift_predictor.core.models.contact import gaps
 from lift_predictor.core.models.spatial.grid import HAND_SCALE, REPORT_OUTPUTS
 from lift_predictor.core.models.spatial.parameters import SpatialParameters
 from lift_predictor.core.problem.loads import report_values
@@ -34,8 +35,10 @@ class SpatialLoads:
         Integrand of the first term of equation 3.9.
     angles : array, shape (n, 10)
         Leg coordinates `parameters.DEPENDENT` [rad].
-    gaps : array, shape (n, 12)
-        Distance of the box from the collision spheres (3.10) [m]; 1 for an unused one.
+    gaps : array, shape (n, 32)
+        Distance of the box from the collision spheres (3.10) [m]; infinite for an unused one.
+    clear, arms, hamstrings, pull : array, shape (n, 32), (n, 8), (n, 2), (n, 1)
+        Constraints of collision, arms, hip flexion [rad] and acceleration, as at the nodes.
     fraction : array, shape (n,)
         Place of the centres of pressure, 0 at the heels, 1 at the tips of the toes.
     inside : array, shape (n, 3)
@@ -54,6 +57,10 @@ class SpatialLoads:
     effort: Array
     angles: Array
     gaps: Array
+    clear: Array
+    arms: Array
+    hamstrings: Array
+    pull: Array
     fraction: Array
     inside: Array
 
@@ -94,7 +101,9 @@ def evaluate(
         values[name] = values[name].reshape(n, 2, 3)
     for name in ('effort', 'fraction'):
         values[name] = values[name][:, 0]
-    return SpatialLoads(**values)
+    offset = values.pop('offset').reshape(n, -1, 3)
+    free = gaps(offset, parameters.box_half, parameters.sphere[:, 3])
+    return SpatialLoads(gaps=free, **values)
 
 
 def lowering(library: NodeLibrary, q: Array, parameters: SpatialParameters) -> tuple[Array, Array]:

@@ -13,12 +13,14 @@ import numpy as np
 from human_model.constants import SIDES
 from human_model.typing import Array
 from lift_predictor.core.models.spatial.parameters import (
+    ARM_POINTS,
     DEPENDENT,
     N_SCALARS,
     N_SPLINED,
     SPHERE_NAMES,
     SPLINED,
     STRONG,
+    TRUNK,
 )
 from lift_predictor.core.problem.grid import TimeGrid
 
@@ -37,6 +39,16 @@ COLLISION_CONSTRAINTS: Final = tuple(
 WAY_CONSTRAINTS: Final = (
     'box in its sector, right edge', 'box in its sector, left edge', 'box above its lower place',
 )  # fmt: skip
+ARM_CONSTRAINTS: Final = tuple(
+    f'{point} out of the {segment}' for segment in TRUNK for point in ARM_POINTS
+)
+BODY_CONSTRAINTS: Final = (
+    *(
+        f'hip flexion with the {side} knee so far extended (hamstrings)'
+        for side in ('right', 'left')
+    ),
+    'acceleration of the box',
+)
 HAND_CONSTRAINTS: Final = ('distance of the hands (3.11)', 'box level (3.12)')
 TECHNIQUE_CONSTRAINTS: Final = (
     'technique: largest Stoop-Squat-Index of the first posture',
@@ -48,11 +60,14 @@ NODE_CONSTRAINTS: Final = (
     *GROUND_CONSTRAINTS,
     *COLLISION_CONSTRAINTS,
     *WAY_CONSTRAINTS,
+    *ARM_CONSTRAINTS,
+    *BODY_CONSTRAINTS,
     *HAND_CONSTRAINTS,
 )
 """Constraints of every node. Units: torques 0 at the lower and 1 at the upper dynamic limit;
 angles [rad]; balance 0 at the heels, 1 at the tips of the toes; ground reactions per body weight;
-collision squared distance per squared sum of radii, less 1; way and hands `HAND_SCALE`."""
+collision `contact.clearance`; way and hands `HAND_SCALE`; arms squared distance per squared
+semi-axes, less 1; hamstrings [rad]; acceleration 1 less its square per squared bound."""
 
 LIMITED: Final = SPLINED[4:]
 """Splined coordinates with joint limits: knees, spine, arms."""
@@ -68,7 +83,11 @@ REPORT_OUTPUTS: Final = (
     ('hand', 6),
     ('effort', 1),
     ('angles', len(DEPENDENT)),
-    ('gaps', len(SPHERE_NAMES)),
+    ('offset', 3 * len(SPHERE_NAMES)),
+    ('clear', len(SPHERE_NAMES)),
+    ('arms', len(ARM_CONSTRAINTS)),
+    ('hamstrings', 2),
+    ('pull', 1),
     ('fraction', 1),
     ('inside', 3),
 )
@@ -125,7 +144,7 @@ class SpatialBounds:
 
     Attributes
     ----------
-    node_lower, node_upper : array, shape (n_nodes, 58)
+    node_lower, node_upper : array, shape (n_nodes, 89)
         Bounds of `NODE_CONSTRAINTS` at each node; posture (3.15) and ground reaction windows
         (3.16, 5.1) are narrower bounds at some nodes.
     angle_lower, angle_upper : array, shape (n_nodes, 22)

@@ -9,6 +9,8 @@ from typing import Any
 
 import casadi as ca
 
+from lift_predictor.core.models.contact import clearance
+from lift_predictor.core.models.passive import passive_hip_moment
 from lift_predictor.core.models.sagittal.model import strength
 from lift_predictor.core.models.spatial.body import BodyState, body_state
 from lift_predictor.core.models.spatial.dynamics import loads
@@ -20,15 +22,18 @@ from lift_predictor.core.models.spatial.grid import (
 )
 from lift_predictor.core.models.spatial.parameters import (
     ARM,
+    ARM_POINTS,
     CONSTANT_STRENGTH,
     DEPENDENT,
     N_PARAMETERS,
     N_SCALARS,
     N_SPLINED,
     ROOT,
+    SIDES,
     SPHERE_BODIES,
     SPINE,
     STRONG,
+    TRUNK,
     unpack,
 )
 from lift_predictor.core.problem.task import WEIGHT_OFFSET
@@ -84,14 +89,21 @@ def _sets() -> tuple[tuple[int, ...], ...]:
 
 
 def torque_limits(angle: dict[str, Any], rate: dict[str, Any], p: Any) -> tuple[Any, Any]:
-    """Lower and upper dynamic torque limits (2.14 to 2.19) of `STRONG` [N m]."""
+    """Lower and upper limits (2.14 to 2.19) of the net torques of `STRONG` [N m].
+
+    The passive moment of the hips is added to what the muscles can do.
+    """
     blocks = unpack(p)
     limits = []
     for side in ('lower', 'upper'):
         own = []
         for name, row in zip(STRONG, blocks[f'strength_{side}'], strict=True):
             constant = name in CONSTANT_STRENGTH
-            own.append(row[0] if constant else strength(angle[name], rate[name], row))
+            limit = row[0] if constant else strength(angle[name], rate[name], row)
+            if name.startswith('hip_flexion'):
+                knee = angle[name.replace('hip_flexion', 'knee_angle')]
+                limit += passive_hip_moment(angle[name], knee, ca.exp)
+            own.append(limit)
         limits.append(ca.vertcat(*own))
     return limits[0], limits[1]
 
@@ -116,7 +128,17 @@ def _instant(q: Any, dq: Any, ddq: Any, mass: Any, p: Any) -> dict[str, Any]:
     right, left = (hand[0] for hand in state.hand)
     width = blocks['box_width'][0][0]
     apart = left - right
-    gaps, clear, inside = _collision(state, right, left, blocks)
+    offset, clear, inside = _collision(state, right, left, blocks)
+    arms = _arms(state, blocks)
+    straight, per_knee = blocks['hip_range'][0]
+    hamstrings = ca.vertcat(
+        *(
+            straight + per_knee * state.angle[f'knee_angle_{s}'] - state.angle[f'hip_flexion_{s}']
+            for s in SIDES
+        )
+    )
+    push = 0.5 * (state.hand[0][1] + state.hand[1][1])
+    pull = 1.0 - ca.sumsqr(push) / blocks['box_acceleration'][0][0] ** 2
     return {
         'torque': load.torque,
         'lower': lower,
@@ -135,20 +157,27 @@ def _instant(q: Any, dq: Any, ddq: Any, mass: Any, p: Any) -> dict[str, Any]:
             load.ground_force[1][2] / weight,
             clear,
             inside / HAND_SCALE,
+            arms,
+            hamstrings,
+            pull,
             (ca.sumsqr(apart) / width - width) / (2.0 * HAND_SCALE),
             apart[2] / HAND_SCALE,
         ),
         'angles': ca.vertcat(*(state.angle[name] for name in DEPENDENT)),
-        'gaps': gaps,
+        'offset': offset,
+        'clear': clear,
+        'arms': arms,
+        'hamstrings': hamstrings,
+        'pull': pull,
         'fraction': load.fraction,
         'inside': inside,
     }
 
 
 def _collision(state: Any, right: Any, left: Any, blocks: dict[str, Any]) -> tuple[Any, ...]:
-    """Distances of the box from the spheres, the same scaled and squared, and inside its way.
+    """Spheres seen from the box, their constraints (equation 3.10), and the box inside its way.
 
-    All [m] but the second (equation 3.10); positive: clear, inside.
+    Offsets along the axes of the box [m]; `contact.clearance`; distances inside [m].
     """
     line = left - right
     length = ca.sqrt(line[0] ** 2 + line[1] ** 2)
@@ -156,15 +185,29 @@ def _collision(state: Any, right: Any, left: Any, blocks: dict[str, Any]) -> tup
     aside = ca.vertcat(line[0], line[1], 0.0) / length
     x, y, z = blocks['box_from_hand'][0]
     box = 0.5 * (right + left) + x * forward + y * aside + z * up
-    gaps, rows = [], []
-    for name, (a, b, c, radius) in zip(SPHERE_BODIES, blocks['sphere'], strict=True):
+    offsets, rows = [], []
+    table = zip(SPHERE_BODIES, blocks['sphere'], blocks['semi_axes'], strict=True)
+    for name, (a, b, c, radius), axes in table:
         segment = state.segment[name]
         centre = segment.place + segment.turning.place([a, b, c])
         used = radius > 0.0
-        reach = ca.if_else(used, radius + blocks['box_radius'][0][0], 1.0)
-        square = ca.sumsqr(box - centre)
-        gaps.append(ca.if_else(used, ca.sqrt(square) - reach, 1.0))
+        offset = [ca.dot(axis, centre - box) for axis in (forward, aside, up)]
+        offsets += offset
+        lengths = [ca.if_else(used, axis, 1.0) for axis in axes]
         # An unused sphere reads "clear" whatever the posture.
-        rows.append(ca.if_else(used, square / reach**2 - 1.0, 1.0))
+        rows.append(ca.if_else(used, clearance(offset, lengths, ca.sqrt), 1.0))
     inside = [ca.dot(box, ca.vertcat(*row[:3])) + row[3] for row in blocks['way']]
-    return ca.vertcat(*gaps), ca.vertcat(*rows), ca.vertcat(*inside)
+    return ca.vertcat(*offsets), ca.vertcat(*rows), ca.vertcat(*inside)
+
+
+def _arms(state: BodyState, blocks: dict[str, Any]) -> Any:
+    """Squared distance of elbows and wrists from the trunk's ellipsoids per semi-axes, less 1."""
+    rows = []
+    for name, (x, z, *axes) in zip(TRUNK, blocks['trunk'], strict=True):
+        segment = state.segment[name]
+        centre = segment.place + segment.turning.place([x, 0.0, z])
+        for point in ARM_POINTS:
+            gap = state.segment[point].place - centre
+            own = [ca.dot(axis, gap) for axis in segment.turning.axes]
+            rows.append(sum((a / b) ** 2 for a, b in zip(own, axes, strict=True)) - 1.0)
+    return ca.vertcat(*rows)

@@ -105,7 +105,7 @@ class SpatialModel(LiftModel[SpatialTask]):
         self, options: PredictorOptions | None = None, stop: StopFlag | None = None
     ) -> None:
         self.options = options = options or PredictorOptions()
-        self.grid = SpatialGrid(options.n_control, options.n_nodes)
+        self.grid = SpatialGrid(options.spline_control, options.n_nodes, options.static_ends)
         self.library = spatial_library()
         self.method = SolveMethod(
             cold=SOLVER_OPTIONS, near=SOLVER_OPTIONS,

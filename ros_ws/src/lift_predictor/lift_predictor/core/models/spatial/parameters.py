@@ -14,6 +14,7 @@ from typing import Any, Final
 import numpy as np
 
 from human_model.typing import Array
+from lift_predictor.core.models.contact import semi_axes
 from lift_predictor.core.parameter_vector import pack_blocks, unpack_blocks
 
 SIDES: Final = ('r', 'l')
@@ -73,18 +74,26 @@ MOVING: Final = (
 BODIES: Final = (*MOVING, 'foot_r', 'foot_l')
 """The feet carry their toes; they do not move."""
 
+_LEG_SPHERES: Final = {
+    'foot': ('toes', 'ball of the foot', 'instep', 'ankle'),
+    'shank': ('lowest shank', 'lower shank', 'shank', 'upper shank', 'highest shank', 'knee'),
+    'thigh': ('lowest thigh', 'lower thigh', 'thigh', 'upper thigh', 'hip'),
+}
 SPHERE_BODIES: Final = (
-    *(f'{name}_{side}' for side in SIDES for name in ('foot', 'shank', 'shank', 'thigh', 'thigh')),
+    *(f'{body}_{side}' for side in SIDES for body, n in _LEG_SPHERES.items() for _ in n),
     'lumbar',
     'thorax',
 )
-"""Segments of the collision spheres: ankle, shank, knee, thigh, hip of both sides, lower and upper
-spine (equation 3.10)."""
+"""Segments of the collision spheres (equation 3.10)."""
 SPHERE_NAMES: Final = (
-    *(f'{n}_{s}' for s in SIDES for n in ('ankle', 'shank', 'knee', 'thigh', 'hip')),
+    *(f'{name}_{side}' for side in SIDES for n in _LEG_SPHERES.values() for name in n),
     'lower spine',
     'upper spine',
 )
+TRUNK: Final = ('lumbar', 'thorax')
+"""Segments that the arms stay out of."""
+ARM_POINTS: Final = tuple(f'{name}_{side}' for side in SIDES for name in ('forearm', 'hand'))
+"""Segments whose origins, elbows and wrists, stay out of the trunk."""
 
 N_SPLINED: Final = len(SPLINED)
 SCALARS: Final = ('box_mass', 'duration')
@@ -100,12 +109,15 @@ SHAPES: Final[dict[str, tuple[int, int]]] = {
     'strength_lower': (len(STRONG), 8),
     'strength_upper': (len(STRONG), 8),
     'sphere': (len(SPHERE_BODIES), 4),
+    'semi_axes': (len(SPHERE_BODIES), 3),
+    'trunk': (len(TRUNK), 5),
+    'hip_range': (1, 2),
     'ankle': (2, 3),
     'foot_turn': (1, 2),
     'sole': (1, 2),
     'inward_lean': (1, 1),
     'gravity': (1, 1),
-    'box_radius': (1, 1),
+    'box_acceleration': (1, 1),
     'box_width': (1, 1),
     'box_turning': (1, 1),
     'box_from_hand': (1, 3),
@@ -137,9 +149,15 @@ class SpatialParameters:
     strength_lower, strength_upper : array, shape (26, 8)
         Coefficients of equations 2.14 and 2.17 for `STRONG` in the coordinate itself [N m]; the
         lower ones give a negative torque.
-    sphere : array, shape (12, 4)
+    sphere : array, shape (32, 4)
         Collision spheres: centre in the segment's frame, radius [m]; a radius that is not
         positive switches it off.
+    trunk : array, shape (2, 5)
+        Ellipsoids of `TRUNK`: centre forward and up in the segment's frame, semi-axes forward, to
+        the side and up [m].
+    hip_range : array, shape (2,)
+        Largest flexion of the hip with a straight knee [rad], and its rise per flexion of the
+        knee.
     ankle : array, shape (2, 3)
         Right and left ankle [m].
     foot_turn : array, shape (2,)
@@ -150,8 +168,12 @@ class SpatialParameters:
         Part of the angle from each foot to the centre of mass by which its force leans inwards.
     gravity : float
         [m/s^2].
-    box_radius, box_width : float
-        Half depth; distance of the hands [m].
+    box_half : array, shape (3,)
+        Half sizes of the box forward, to the side and up [m].
+    box_acceleration : float
+        Largest acceleration of the box [m/s^2].
+    box_width : float
+        Distance of the hands [m].
     box_turning : float
         Moment of inertia of the box about the vertical, per mass and squared width.
     box_from_hand : array, shape (3,)
@@ -160,7 +182,7 @@ class SpatialParameters:
         Half-spaces n x + d >= 0 in which the box's centre stays: left and right of the edges of
         the sector, seen from between the ankles, in which it is carried, and above the lower of
         its places. Without the first two the least effort is to swing the box past the hips, where
-        equation 3.10 with one sphere for the box lets it pass; without the third a heavy box may
+        equation 3.10 lets it pass; without the third a heavy box may
         sink into the floor.
     objective : array, shape (2,)
         Factors a and b of the objective a effort - b log(W + 10), W in N (equation 3.9 with
@@ -180,12 +202,15 @@ class SpatialParameters:
     strength_lower: Array
     strength_upper: Array
     sphere: Array
+    trunk: Array
+    hip_range: Array
     ankle: Array
     foot_turn: Array
     sole: Array
     inward_lean: float
     gravity: float
-    box_radius: float
+    box_half: Array
+    box_acceleration: float
     box_width: float
     box_turning: float
     box_from_hand: Array
@@ -203,6 +228,11 @@ class SpatialParameters:
             A field of the wrong shape or a value that is not finite.
         """
         return pack_blocks(self, SHAPES)
+
+    @property
+    def semi_axes(self) -> Array:
+        """Semi-axes of the box grown by each sphere's radius, shape (32, 3) [m]."""
+        return semi_axes(self.box_half, self.sphere[:, 3])
 
     @property
     def body_mass(self) -> float:

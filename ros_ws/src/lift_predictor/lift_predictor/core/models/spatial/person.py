@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -18,6 +19,7 @@ from human_model.subject import Subject
 from human_model.tables import read_table
 from human_model.typing import Array
 from lift_predictor.core.exceptions import TaskError
+from lift_predictor.core.models.ranges import hip_range, ranges
 from lift_predictor.core.models.spatial.parameters import (
     BODIES,
     CONSTANT_STRENGTH,
@@ -48,8 +50,10 @@ class SpatialPerson:
         Gives the motion of the result.
     strength : JointStrength
         Torque limits.
-    body, pelvis, spine, arm, leg, strength_lower, strength_upper, sphere, sole
+    body, pelvis, spine, arm, leg, strength_lower, strength_upper, sphere, trunk, hip_range, sole
         As in `SpatialParameters`.
+    ranges : mapping
+        Lower and upper end of the range of each coordinate of the skeleton [rad].
     standing : array, shape (4,)
         As in `SpatialParameters`.
     ankle_height : float
@@ -69,9 +73,12 @@ class SpatialPerson:
     strength_lower: Array
     strength_upper: Array
     sphere: Array
+    trunk: Array
+    hip_range: Array
     sole: Array
     standing: Array
     ankle_height: float
+    ranges: Mapping[str, tuple[float, float]]
     gravity: float = GRAVITY
 
     @classmethod
@@ -117,6 +124,9 @@ class SpatialPerson:
             strength_lower=strength_rows(strength, STRONG, 'lower', CONSTANT_STRENGTH),
             strength_upper=strength_rows(strength, STRONG, 'upper', CONSTANT_STRENGTH),
             sphere=_spheres(subject, skeleton),
+            trunk=_trunk(subject, length),
+            hip_range=np.array(hip_range()),
+            ranges=_ranges(skeleton),
             sole=np.array([-length['heel_length'], length['ankle_mtp'] + length['toes']]),
             standing=_standing(skeleton),
             ankle_height=float(length['ankle_height']),
@@ -124,19 +134,13 @@ class SpatialPerson:
 
     def limits(self, names: tuple[str, ...]) -> tuple[Array, Array]:
         """Lower and upper joint limits of coordinates by name; the pelvis' own are infinite."""
-        known = self.skeleton.coordinates
-        rows = np.array(
-            [
-                self.skeleton.limits[known.index(name)] if name in known else (-np.inf, np.inf)
-                for name in names
-            ]
-        )
+        rows = np.array([self.ranges.get(name, (-np.inf, np.inf)) for name in names])
         return rows[:, 0], rows[:, 1]
 
     def fields(self) -> dict[str, Any]:
         """Return the person's fields of `SpatialParameters`."""
         names = ('body', 'pelvis', 'spine', 'arm', 'leg', 'strength_lower', 'strength_upper',
-                 'sphere', 'sole', 'standing', 'gravity')  # fmt: skip
+                 'sphere', 'trunk', 'hip_range', 'sole', 'standing', 'gravity')  # fmt: skip
         return {name: getattr(self, name) for name in names} | {'inward_lean': INWARD_LEAN}
 
 
@@ -166,11 +170,30 @@ def _bodies(skeleton: Skeleton3D) -> Array:
     return table
 
 
+def _ranges(skeleton: Skeleton3D) -> dict[str, tuple[float, float]]:
+    narrower = ranges(skeleton.name)
+    found = {}
+    for name, (low, high) in zip(skeleton.coordinates, skeleton.limits, strict=True):
+        least, most = narrower.get(name, (-np.inf, np.inf))
+        found[name] = (max(float(low), least), min(float(high), most))
+    return found
+
+
+def _trunk(subject: Subject, length: Mapping[str, float]) -> Array:
+    dimensions = body_dimensions(subject.sex, subject.stature, subject.mass)
+    rows = []
+    for part, upper in (('waist', 't12l1'), ('chest', 'shoulder')):
+        forward, up = 0.5 * length[f'{upper}_forward'], 0.5 * length[f'{upper}_height']
+        depth, breadth = dimensions[f'{part}depth'], dimensions[f'{part}breadth']
+        rows.append((forward, up, 0.5 * depth, 0.5 * breadth, up))
+    return np.array(rows)
+
+
 def _spheres(subject: Subject, skeleton: Skeleton3D) -> Array:
     dimensions = body_dimensions(subject.sex, subject.stature, subject.mass)
     length = skeleton.parameters.lengths
     along = {
-        'foot': np.zeros(3),
+        'foot': np.array([length['ankle_mtp'] + length['toes'], 0.0, -length['ankle_height']]),
         'shank': np.array([0.0, 0.0, -length['shank']]),
         'thigh': np.array([0.0, 0.0, -length['thigh']]),
         'lumbar': np.array([length['t12l1_forward'], 0.0, length['t12l1_height']]),

@@ -12,7 +12,8 @@ from human_model.motion import BodyMotion, Lift
 from human_model.task import Box
 from human_model.typing import Array
 from lift_predictor.core.exceptions import TaskError
-from lift_predictor.core.models.spatial.clearance import recorded_gaps
+from lift_predictor.core.models.ranges import hamstring_room, ranges
+from lift_predictor.core.models.spatial.clearance import recorded_arms, recorded_gaps
 from lift_predictor.core.models.spatial.frame import StanceFrame, splined_motion
 from lift_predictor.core.models.spatial.grid import (
     GROUND_CONSTRAINTS,
@@ -68,11 +69,12 @@ def recorded_task(
     motion = lift.window
     frame = StanceFrame.of(motion, person)
     recorded = _recorded(motion, lift, frame, person)
+    person, notes = _with_range(person, motion, recorded.q)
     duration = lift.end - lift.start
     placed, way = _placed_box(motion, frame, box, mass or (box.mass, box.mass))
     limits = (duration * windows.duration[0], duration * windows.duration[1])
     task = place_task(person, frame, placed, limits, grid, lift.lift_id, way)
-    parameters, notes = _fit_spheres(task.parameters, motion, frame, person)
+    parameters, closer = _fit_spheres(task.parameters, motion, frame, person)
     bounds = _windows(task, recorded, windows, grid, duration)
     return replace(
         task,
@@ -81,7 +83,7 @@ def recorded_task(
         recorded=recorded,
         parameters=parameters,
         bounds=bounds,
-        notes=notes,
+        notes=(*notes, *closer),
     )
 
 
@@ -125,7 +127,48 @@ def _placed_box(
             a, b = c[index], s[index]
             turned = np.array([[a, -b, 0.0], [b, a, 0.0], [0.0, 0.0, 1.0]]) @ from_hand
             places[row] = frame.into(np.asarray(wanted, dtype=float)) - turned
-    return PlacedBox(mass, box.depth, width, places, turns[[0, -1]], from_hand), middle
+    return PlacedBox(mass, box.size, width, places, turns[[0, -1]], from_hand), middle
+
+
+def _with_range(
+    person: SpatialPerson, motion: BodyMotion, q: Array
+) -> tuple[SpatialPerson, tuple[str, ...]]:
+    """Widen the ranges that the recorded lift itself exceeded: this person has more.
+
+    Ranges of motion up to the limits of the skeleton, the hamstrings' length, and the trunk that
+    the arms stay out of.
+    """
+    skeleton = person.skeleton
+    wider, more = dict(person.ranges), {}
+    for name in ranges(skeleton.name):
+        values = motion.coordinate(name)
+        known = skeleton.limits[skeleton.index(name)]
+        low = max(min(person.ranges[name][0], float(values.min())), float(known[0]))
+        high = min(max(person.ranges[name][1], float(values.max())), float(known[1]))
+        beyond = max(person.ranges[name][0] - low, high - person.ranges[name][1])
+        if beyond > 0.0:
+            wider[name], more[name] = (low, high), beyond
+    room = min(
+        float(
+            hamstring_room(
+                motion.coordinate(f'hip_flexion_{side}'),
+                motion.coordinate(f'knee_angle_{side}'),
+                person.hip_range,
+            ).min()
+        )
+        for side in SIDES
+    )
+    hip = person.hip_range - np.array([min(room, 0.0), 0.0])
+    if room < 0.0:
+        more['hip_flexion with the knee'] = -room
+    notes = tuple(
+        f'the range of {name} is {np.degrees(amount):.0f} deg wider than published, as recorded'
+        for name, amount in more.items()
+    )
+    trunk = person.trunk.copy()
+    thinner = np.minimum(recorded_arms(trunk, motion, person).min(axis=(0, 2)), 1.0)
+    trunk[:, 2:] *= thinner[:, None]
+    return replace(person, ranges=wider, hip_range=hip, trunk=trunk), notes
 
 
 def _fit_spheres(

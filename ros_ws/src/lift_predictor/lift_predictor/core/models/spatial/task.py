@@ -22,6 +22,7 @@ from lift_predictor.core.models.spatial.grid import (
 )
 from lift_predictor.core.models.spatial.parameters import DEPENDENT, SIDES, SpatialParameters
 from lift_predictor.core.models.spatial.person import SpatialPerson
+from lift_predictor.core.problem.task import NO_BOX, largest_acceleration
 
 SECTOR_MARGIN: Final = float(np.radians(20.0))
 """How far the box may leave the sector of its way to either side (our choice) [rad]."""
@@ -137,8 +138,10 @@ class PlacedBox:
     ----------
     mass : tuple of float
         Lower and upper bound [kg]; equal: given.
-    depth, width : float
-        Extent away from the person and between the hands [m].
+    size : tuple of float
+        Extent away from the person, to the side and up [m].
+    width : float
+        Distance of the hands [m].
     places : array, shape (2, 3)
         Middle of the hands at start and end [m].
     turns : array, shape (2,)
@@ -148,7 +151,7 @@ class PlacedBox:
     """
 
     mass: tuple[float, float]
-    depth: float
+    size: tuple[float, float, float]
     width: float
     places: Array
     turns: Array
@@ -226,23 +229,26 @@ def place_task(
     TaskError
         Sizes that are not positive, or bounds in the wrong order.
     """
-    if not (box.width > 0.0 and box.depth >= 0.0 and 0.0 <= box.mass[0] <= box.mass[1]):
+    if not (box.width > 0.0 and min(box.size) >= 0.0 and 0.0 <= box.mass[0] <= box.mass[1]):
         raise TaskError(
-            f'box: width {box.width} m, depth {box.depth} m, mass {box.mass} kg are no box'
+            f'box: hands {box.width} m apart, size {box.size} m, mass {box.mass} kg are no box'
         )
     if not 0.0 < duration[0] <= duration[1]:
         raise TaskError(f'duration = {duration} s: positive, in ascending order is needed')
     fields = person.fields()
-    if box.depth == 0.0:
+    if box.size[0] == 0.0:
         fields['sphere'] = fields['sphere'] * np.array([1.0, 1.0, 1.0, 0.0])
     parameters = SpatialParameters(
         **fields,
         ankle=frame.ankle,
         foot_turn=frame.foot_turn,
-        box_radius=0.5 * box.depth,
+        box_half=0.5 * np.array(box.size),
+        box_acceleration=(
+            largest_acceleration(box.places, duration[0]) if box.size[0] > 0.0 else NO_BOX
+        ),
         box_width=box.width,
         # A uniform cuboid.
-        box_turning=(box.depth**2 + box.width**2) / (12.0 * box.width**2),
+        box_turning=(box.size[0] ** 2 + box.width**2) / (12.0 * box.width**2),
         box_from_hand=box.from_hand,
         way=box.way(way),
     )

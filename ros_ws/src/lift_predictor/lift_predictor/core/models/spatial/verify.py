@@ -13,6 +13,8 @@ from human_model.typing import Array
 from lift_predictor.core.models.spatial.evaluation import SpatialLoads, evaluate
 from lift_predictor.core.models.spatial.grid import (
     ANGLE_CONSTRAINTS,
+    ARM_CONSTRAINTS,
+    BODY_CONSTRAINTS,
     COLLISION_CONSTRAINTS,
     GROUND_CONSTRAINTS,
     HAND_SCALE,
@@ -47,10 +49,14 @@ TOLERANCE: Final[dict[str, float]] = {
     'foot_pulled [N]': 1.0,
     'collision [m]': 1e-3,
     'way [m]': 1e-3,
+    'arms': 2e-2,
+    'hamstrings [rad]': 1e-3,
+    'box_acceleration [m/s^2]': 0.05,
     'hand_distance [m]': 2e-3,
     'box_level [m]': 2e-3,
     'hand_position [m]': 1e-4,
     'static_ends [rad/s]': 1e-6,
+    'static_ends [rad/s^2]': 1e-6,
     'posture [rad]': 1e-3,
     'ground_window [N]': 1.0,
 }
@@ -99,6 +105,12 @@ def verify(
     posture, ground = _windows(task.bounds, limited, loads, weight)
     angles = np.hstack((limited, loads.angles))
     low, high = (np.concatenate(pair) for pair in zip(own, leg, strict=True))
+    # By differences of the places, independent of the model's accelerations.
+    step = duration / (len(s) - 1)
+    box_acceleration = np.diff(loads.hand.mean(axis=1), 2, axis=0) / step**2
+    moved_box = np.linalg.norm(box_acceleration, axis=1) - p.box_acceleration
+    # Asked for with rest in acceleration only.
+    still = float(grid.rest == 'acceleration')
     pulled = -loads.ground_force[:, :, 2]
     families = {
         'joint_angle [rad]': Family(
@@ -113,16 +125,22 @@ def verify(
         'foot_pulled [N]': Family(pulled, FEET, s),
         'collision [m]': Family(-loads.gaps, SPHERE_NAMES, s),
         'way [m]': Family(-loads.inside, ('right edge', 'left edge', 'lower place'), s),
+        'arms': Family(-loads.arms, ARM_CONSTRAINTS, s),
+        'hamstrings [rad]': Family(-loads.hamstrings, BODY_CONSTRAINTS[:2], s),
+        'box_acceleration [m/s^2]': Family(moved_box[:, None], ('box',), s[1:-1]),
         'hand_distance [m]': Family(np.abs(width - p.box_width)[:, None], ('hands',), s),
         'box_level [m]': Family(np.abs(apart[:, 2:]), ('hands',), s),
         'hand_position [m]': Family(at_ends, ('right hand', 'left hand'), s[[0, -1]]),
         'static_ends [rad/s]': Family(
             np.abs(dq[[0, -1]]).max(axis=1)[:, None], ('body',), s[[0, -1]]
         ),
+        'static_ends [rad/s^2]': Family(
+            still * np.abs(ddq[[0, -1]]).max(axis=1)[:, None], ('body',), s[[0, -1]]
+        ),
         'posture [rad]': Family(posture, LIMITED + DEPENDENT, grid.times),
         'ground_window [N]': Family(ground, FEET, grid.times),
     }
-    node_excess = _node_excess(loads, leg, p.sphere[:, 3] + p.box_radius, weight)
+    node_excess = _node_excess(loads, leg, weight)
     angle_excess = np.stack((near_nodes(own[0] - limited), near_nodes(limited - own[1])))
     return Verification.of(families, TOLERANCE, np.dstack((node_excess, angle_excess)))
 
@@ -138,7 +156,7 @@ def tightened(bounds: SpatialBounds, excess: Array, factor: float) -> SpatialBou
     ----------
     bounds : SpatialBounds
         Of the task.
-    excess : ndarray, shape (2, n_nodes, 80)
+    excess : ndarray, shape (2, n_nodes, 111)
         `Verification.excess`.
     factor : float
         Margin in units of the excess.
@@ -159,10 +177,8 @@ def tightened(bounds: SpatialBounds, excess: Array, factor: float) -> SpatialBou
     )
 
 
-def _node_excess(
-    loads: SpatialLoads, leg: tuple[Array, Array], reach: Array, weight: float
-) -> Array:
-    """Excess of the node constraints over their limits without windows, (2, n_nodes, 58)."""
+def _node_excess(loads: SpatialLoads, leg: tuple[Array, Array], weight: float) -> Array:
+    """Excess of the node constraints over their limits without windows, (2, n_nodes, 89)."""
     n = len(loads.fraction)
     low, high = np.full((2, n, len(NODE_CONSTRAINTS)), -np.inf)
     span = loads.upper - loads.lower
@@ -174,8 +190,11 @@ def _node_excess(
     start = constraint_slice(GROUND_CONSTRAINTS).start
     low[:, start], high[:, start] = -loads.fraction, loads.fraction - 1.0
     low[:, start + 1 : start + 3] = -loads.ground_force[:, :, 2] / weight
-    low[:, constraint_slice(COLLISION_CONSTRAINTS)] = -(((loads.gaps + reach) / reach) ** 2 - 1.0)
-    low[:, constraint_slice(COLLISION_CONSTRAINTS)][loads.gaps >= 0.0] = -np.inf
+    low[:, constraint_slice(COLLISION_CONSTRAINTS)] = np.where(
+        loads.gaps < 0.0, -loads.clear, -np.inf
+    )
+    low[:, constraint_slice(ARM_CONSTRAINTS)] = -loads.arms
+    low[:, constraint_slice(BODY_CONSTRAINTS)] = -np.hstack((loads.hamstrings, loads.pull))
     low[:, constraint_slice(WAY_CONSTRAINTS)] = -loads.inside / HAND_SCALE
     return np.stack((near_nodes(low), near_nodes(high)))
 

@@ -94,7 +94,7 @@ def _placed(grid: SpatialGrid, person: SpatialPerson, task: PlanTask, feet: Feet
     offset = np.stack((away * np.cos(turns), away * np.sin(turns), np.full(2, up)), axis=1)
     mass = 0.0 if task.box_mass is None else task.box_mass
     box = PlacedBox(
-        (mass, mass), task.box_size[0], task.box_size[1], centres - offset, turns,
+        (mass, mass), task.box_size, task.box_size[1], centres - offset, turns,
         np.array([away, 0.0, up]),
     )  # fmt: skip
     duration = (task.duration, task.duration)

@@ -12,6 +12,7 @@ from human_model.typing import Array
 from lift_predictor.core.exceptions import UnreachableError
 from lift_predictor.core.models.sagittal.parameters import JOINTS
 from lift_predictor.core.models.spatial.evaluation import evaluate, lowering
+from lift_predictor.core.models.spatial.grid import COLLISION_CONSTRAINTS, WAY_CONSTRAINTS
 from lift_predictor.core.models.spatial.parameters import DEPENDENT, SPLINED
 from lift_predictor.core.models.spatial.postures import TURNED
 from lift_predictor.core.models.spatial.task import SpatialTask
@@ -88,6 +89,8 @@ def near_guess(
                 loads.hand.reshape(len(q), 6) - wanted,
                 np.minimum(loads.gaps, 0.0),
                 np.minimum(loads.inside, 0.0),
+                np.minimum(loads.arms, 0.0),
+                np.minimum(loads.hamstrings, 0.0),
                 np.maximum(np.maximum(leg_lower - loads.angles, loads.angles - leg_upper), 0.0),
                 length * outside,
                 np.minimum(loads.ground_force[:, :, 2] / weight, 0.0),
@@ -96,13 +99,14 @@ def near_guess(
         )
         return np.where(np.isnan(residual), _NO_POSTURE, residual)
 
+    clear = 6 + len(COLLISION_CONSTRAINTS) + len(WAY_CONSTRAINTS)
     q, rest = nearest_posture(errors, spatial_guess(name, task, end), lower, upper)
     return Posture(
         name,
         q,
         distance=float(np.linalg.norm(rest[:6].reshape(2, 3), axis=1).max()),
-        depth=float(-rest[6:21].min()),
-        unbalanced=float(np.abs(rest[21:-1]).max()),
+        depth=float(-rest[6:clear].min()),
+        unbalanced=float(np.abs(rest[clear:-1]).max()),
         off_technique=float(rest[-1]),
     )
 
