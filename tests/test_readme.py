@@ -176,7 +176,7 @@ def _served(package: str, tree: ast.Module, types: dict[str, str]) -> dict[str, 
         if not isinstance(node, ast.Call):
             continue
         name = getattr(node.func, 'attr', getattr(node.func, 'id', ''))
-        first = {'create_service': 0, 'ActionServer': 1}.get(name)
+        first = {'serve': 0, 'create_service': 0, 'ActionServer': 1}.get(name)
         if first is None:
             continue
         kind, topic = node.args[first : first + 2]

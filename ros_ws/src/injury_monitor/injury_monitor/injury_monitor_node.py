@@ -33,9 +33,9 @@ class InjuryMonitorNode(PipelineNode[MonitorStation]):
         """Create the station, its topics and the services."""
         super().build()
         self._operator_services = [
-            self.create_service(AcknowledgeAlarm, '~/acknowledge_alarm', self._acknowledge),
-            self.create_service(ResetAlarm, '~/reset_alarm', self._reset),
-            self.create_service(ShelveAlarm, '~/shelve_alarm', self._shelve),
+            self.serve(AcknowledgeAlarm, '~/acknowledge_alarm', self._acknowledge),
+            self.serve(ResetAlarm, '~/reset_alarm', self._reset),
+            self.serve(ShelveAlarm, '~/shelve_alarm', self._shelve),
         ]
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:

@@ -14,6 +14,7 @@ from human_model.motion import BodyMotion, Lift
 from human_model.report import SolveReport, SolveStatus
 from human_model.subject import Calibration, Subject
 from human_model.typing import Array
+from lifting_messages.exceptions import MessageValueError
 from lifting_messages.message_types import Message, make, message_type
 from lifting_messages.names import join, split
 from lifting_messages.stamps import header, to_seconds
@@ -85,9 +86,21 @@ def report_to_msg(report: SolveReport) -> Message:
 
 
 def report_from_msg(message: Message) -> SolveReport:
-    """Return the solve report of a message; an unknown status raises ValueError."""
+    """Return the solve report of a message.
+
+    Raises
+    ------
+    MessageValueError
+        If the status is unknown.
+    """
+    try:
+        status = SolveStatus(message.status)
+    except ValueError as error:
+        raise MessageValueError(
+            'SolveReport.status', message.status, 'is none of its constants'
+        ) from error
     return SolveReport(
-        SolveStatus(message.status),
+        status,
         message.message,
         message.iterations,
         message.objective,
@@ -105,7 +118,15 @@ def subject_from_msg(message: Message) -> Subject:
     ------
     human_model.exceptions.SubjectError
         If a value is out of range or arrays do not belong together.
+    MessageValueError
+        If there is not one length for each name of a segment.
     """
+    names, lengths = message.segment_length_names, message.segment_lengths
+    if len(names) != len(lengths):
+        raise MessageValueError(
+            'Subject.segment_lengths', len(lengths), f'{len(names)} segment_length_names'
+        )
+    measured = dict(zip(names, lengths, strict=True))
     calibration = None
     if message.marker_names:
         offsets = np.asarray(message.marker_offsets, np.float64)
@@ -115,7 +136,7 @@ def subject_from_msg(message: Message) -> Subject:
             names,
             tuple(message.marker_segments),
             offsets.reshape(shape),
-            dict(zip(message.segment_length_names, message.segment_lengths, strict=True)),
+            measured,
             0.0 if np.isnan(message.calibration_rms) else message.calibration_rms,
         )
     return Subject(
@@ -125,7 +146,7 @@ def subject_from_msg(message: Message) -> Subject:
         stature=message.stature,
         age=message.age,
         strength_z=message.strength_z,
-        lengths=dict(zip(message.segment_length_names, message.segment_lengths, strict=True)),
+        lengths=measured,
         calibration=calibration,
     )
 

@@ -32,6 +32,22 @@ class NameListError(LiftingMessagesError):
         self.name = name
 
 
+class MessageValueError(LiftingMessagesError):
+    """A field of a message has a value that its definition does not allow.
+
+    Attributes
+    ----------
+    field : str
+        Type and field.
+    value : object
+    """
+
+    def __init__(self, field: str, value: object, requirement: str) -> None:
+        super().__init__(f'{field} = {value!r}: {requirement}')
+        self.field = field
+        self.value = value
+
+
 class MessageError(LiftingMessagesError):
     """Bytes that are no message of the type that they should have.
 

@@ -9,8 +9,10 @@ import inspect
 import math
 import threading
 import time
+import traceback
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from typing import Any, ClassVar, Final, Generic, TypeVar
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
@@ -21,19 +23,28 @@ from rclpy.lifecycle import (
     LifecycleState,
     TransitionCallbackReturn,
 )
+from rclpy.service import Service
 from rclpy.subscription import Subscription
 
 from human_model.exceptions import LiftingError
 from lifting_messages import Message, decode, encode
+from lifting_messages.input_watch import InputWatch
 from lifting_messages.message_types import full_name
 from lifting_messages.parameters import load_table
 from lifting_messages.station import Output, Station
 from lifting_messages.topics import Topic
 from lifting_node import qos
 from lifting_node.garbage import TimedSearch
+from lifting_node.lifecycle_guard import refuse_unfit_requests
 from lifting_node.parameters import declare
 
 S = TypeVar('S', bound=Station)
+
+ERROR_SHOWN: Final = 10.0
+"""Time [s] for which /diagnostics names an error after it came; the counts remain."""
+
+DEFECT: Final = 500
+"""Error code of a service whose callback failed unexpectedly."""
 
 PAUSE: Final = 0.002
 """Time [s] from a live sample to work on whole lifts: the nodes that wait for the results of the
@@ -63,6 +74,7 @@ class PipelineNode(LifecycleNode, Generic[S]):
 
     def __init__(self) -> None:
         super().__init__(self.STATION.PACKAGE)
+        refuse_unfit_requests(self)
         self.values: dict[str, Any] = declare(self, load_table(self.STATION.PACKAGE))
         self.active = False
         self._station: S | None = None
@@ -71,6 +83,10 @@ class PipelineNode(LifecycleNode, Generic[S]):
         self._outputs: dict[str, LifecyclePublisher] = {}
         self._last_live = -math.inf
         self._worked = False
+        self._watch = InputWatch(self.STATION.INPUTS, time.monotonic)
+        self._defects = 0
+        self._errors = 0
+        self._error_came = -math.inf
         self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', 10)
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._turn = self.create_timer(PAUSE, self._work, clock=steady, autostart=False)
@@ -123,10 +139,11 @@ class PipelineNode(LifecycleNode, Generic[S]):
         live = not topic.quality.latched
 
         def receive(data: Any) -> None:
+            self._watch.note(name)
             if live and not self.active:
                 station.counts['samples while not active'] += 1
                 return
-            with station.guard(name):
+            with self.survive(name), station.guard(name):
                 self.publish_all(station.receive(name, decode(data, kind)))
             if live:
                 self._last_live = time.monotonic()
@@ -135,16 +152,47 @@ class PipelineNode(LifecycleNode, Generic[S]):
 
         return receive
 
+    @contextmanager
+    def survive(self, what: str) -> Iterator[None]:
+        """Report an unexpected exception as a defect, and go on.
+
+        A defect in the processing of one message must not end the alarms of a station.
+        """
+        try:
+            yield
+        except Exception:
+            self._defects += 1
+            self.get_logger().error(f'defect at {what}:\n{traceback.format_exc()}')
+
+    def serve(self, kind: Any, name: str, callback: Callable[[Any, Any], Any]) -> Service:
+        """Create a service; a defect in its callback is reported in its answer."""
+
+        def answer(request: Any, response: Any) -> Any:
+            with self.survive(name):
+                return callback(request, response)
+            for field in ('message', 'error_message'):
+                if hasattr(response, field):
+                    setattr(response, field, 'defect of the node; see its log')
+            if hasattr(response, 'error_code'):
+                response.error_code = DEFECT
+            return response
+
+        return self.create_service(kind, name, answer)
+
     def _plan_work(self) -> None:
         if self.active and self.station.pending:
             self._turn.reset()
 
     def _work(self) -> None:
-        if time.monotonic() - self._last_live > QUIET:
-            self.publish_all(self.station.work(QUIET_STEP))
-        elif not self._worked:
-            self.publish_all(self.station.work(LIFT_STEP))
-            self._worked = True
+        if self._station is None:
+            self._turn.cancel()
+            return
+        with self.survive('whole lifts'):
+            if time.monotonic() - self._last_live > QUIET:
+                self.publish_all(self.station.work(QUIET_STEP))
+            elif not self._worked:
+                self.publish_all(self.station.work(LIFT_STEP))
+                self._worked = True
         if not self.station.pending:
             self._turn.cancel()
 
@@ -160,6 +208,7 @@ class PipelineNode(LifecycleNode, Generic[S]):
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Start publishing and the work on lifts that came before; load `LATER`."""
         self.active = True
+        self._watch.begin()
         # A first log message looks for its caller in all modules, for tens of milliseconds: now,
         # not at the first lift.
         inspect.getmodule(self.on_activate.__code__)
@@ -204,23 +253,39 @@ class PipelineNode(LifecycleNode, Generic[S]):
     def _each_second(self) -> None:
         if self.active:
             self._search.step()
-            self.publish_all(self.station.tick())
+            with self.survive('the clock'):
+                self.publish_all(self.station.tick())
             self._plan_work()
         self._publish_health()
 
     def _publish_health(self) -> None:
         station = self._station
         counts = Counter[str]() if station is None else station.counts
-        error = '' if station is None else station.last_error
+        problems = self._problems(counts['errors'])
+        level = DiagnosticStatus.WARN if problems else DiagnosticStatus.OK
+        if self._defects:
+            counts = counts + Counter(defects=self._defects)
+            problems.append(f'{self._defects} defects, see the log')
+            level = DiagnosticStatus.ERROR
         status = DiagnosticStatus(
-            level=DiagnosticStatus.WARN if counts['errors'] else DiagnosticStatus.OK,
+            level=level,
             name=self.get_fully_qualified_name(),
-            message=error or ('active' if self.active else 'not active'),
+            message='; '.join(problems) or ('active' if self.active else 'not active'),
             values=[KeyValue(key=key, value=str(n)) for key, n in sorted(counts.items())],
         )
         array = DiagnosticArray(status=[status])
         array.header.stamp = self.get_clock().now().to_msg()
         self._diagnostics.publish(array)
+
+    def _problems(self, errors: int) -> list[str]:
+        """Return the missing inputs, and the last error while it is recent."""
+        now = time.monotonic()
+        if errors != self._errors:
+            self._errors, self._error_came = errors, now
+        problems = self._watch.problems() if self.active else []
+        if self._station is not None and now - self._error_came < ERROR_SHOWN:
+            problems.append(self._station.last_error)
+        return problems
 
 
 def _message_class(topic: Topic) -> type:

@@ -21,7 +21,7 @@ class MotionTrackerNode(PipelineNode[TrackerStation]):
     def build(self) -> None:
         """Create the station, its topics and the flush service."""
         super().build()
-        self._flush_service = self.create_service(Trigger, '~/flush', self._on_flush)
+        self._flush_service = self.serve(Trigger, '~/flush', self._on_flush)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Drop the service with the rest."""

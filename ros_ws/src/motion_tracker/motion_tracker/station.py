@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
 from itertools import pairwise
 from typing import Any, Final, TypeAlias
+from uuid import uuid4
 
 import numpy as np
 
@@ -58,6 +59,8 @@ class TrackerStation(Station):
         Of the recording, once person and task are known and its first sample has come.
     lifts : int
         Number of lifts in finished recordings.
+    session : str
+        End of the names of this station's lifts; '' for files.
     """
 
     PACKAGE = 'motion_tracker'
@@ -76,6 +79,9 @@ class TrackerStation(Station):
         self._settings = settings
         self.tracker: MotionTracker | None = None
         self.lifts = 0
+        # A restarted tracker counts its lifts from 1: their names must differ from those before.
+        # Lifts of a file meet no others, and their names are the same each time.
+        self.session = '' if clock is None else uuid4().hex[:8]
         self._subject: tuple[Subject, str] | None = None
         self._task: tuple[float, Array] | None = None
         self._early: deque[Sample] = deque(maxlen=EARLY_SAMPLES)
@@ -230,6 +236,7 @@ class TrackerStation(Station):
                 marker_set,
                 *self._task,
                 first_lift=self.lifts + 1,
+                session=self.session,
                 clock=self.clock,
                 settings=self._settings,
             )

@@ -19,7 +19,7 @@ from human_model.motion import POINTS
 from human_model.skeletons import Skeleton3D
 from human_model.subject import Subject
 from human_model.typing import Array
-from motion_tracker.core.exceptions import TrackerError
+from motion_tracker.core.exceptions import MotionTrackerError, TrackerError
 from motion_tracker.core.filters import settling_time
 from motion_tracker.core.forces.box_watch import BoxFollower, BoxPlace
 from motion_tracker.core.forces.force_plates import PlateGeometry
@@ -302,15 +302,17 @@ class MotionTracker:
     def _process_pending(self, final: bool) -> list[Output]:
         outputs: list[Output] = []
         if self._rate == 0.0:
-            if len(self._pending) <= RATE_SAMPLES and not (final and len(self._pending) > 2):
+            stamps = [stamp for stamp, *_ in self._pending]
+            if len(stamps) <= RATE_SAMPLES and not (final and len(stamps) > 2):
                 return outputs
-            if (
-                len(self._pending) < JITTER_SAMPLES
-                and not final
-                and jitters([stamp for stamp, *_ in self._pending])
-            ):
+            if len(stamps) < JITTER_SAMPLES and not final and jitters(stamps):
                 return outputs
-            self._start()
+            try:
+                self._start(stamps)
+            except MotionTrackerError:  # such as frames too slow for the filters
+                self._rate = 0.0
+                self._pending.clear()
+                raise
         while self._pending:
             stamp, _, solution, arrival = self._pending[0]
             synchronized, notices = self._synchronizer.synchronized(
@@ -324,16 +326,14 @@ class MotionTracker:
         notices, self._notices = self._notices, []
         return notices + outputs
 
-    def _start(self) -> None:
-        stamps = [stamp for stamp, *_ in self._pending]
+    def _start(self, stamps: list[float]) -> None:
         self._rate = rate_of(stamps, 'markers')
         spread = 0.0
         if jitters(stamps):
             spread = mean_deviation(stamps)
             self._rate = rate_of([0.0, 1.0 / mean_rate(stamps)], 'markers')
-            self._notices.append(
-                Notice('markers: the stamps jitter; even times are used, as cameras expose evenly')
-            )
+            text = 'markers: the stamps jitter; even times are used, as cameras expose evenly'
+            self._notices.append(Notice(text))
         gap = self.settings.longest_gap
         self._frame_clock = SampleClock(self._rate, gap, spread)
         self._box_clock = SampleClock(self._rate, gap, spread)

@@ -143,6 +143,8 @@ def reach(
     rest = residual(posture[None], 1.0)[0, : -len(posture)]
     if np.abs(rest).max() <= REACHED:
         return posture, float(np.linalg.norm(rest[:2]))
+    if not np.isfinite(reference).all():  # a place so far away that its arithmetic overflows
+        return np.clip(np.nan_to_num(reference), lower, upper), np.inf
     # Loads for long, and most postures do not need it.
     from scipy.optimize import least_squares
 
