@@ -14,9 +14,10 @@ from rclpy.action import ActionServer, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 
+from human_model.exceptions import LiftingError
 from lift_predictor import conversions
 from lift_predictor.background import Background
-from lift_predictor.core.exceptions import CancelledError, LiftPredictorError
+from lift_predictor.core.exceptions import CancelledError
 from lift_predictor.core.problem.prediction import Prediction
 from lift_predictor.plan_action import PlanAction
 from lift_predictor.station import PredictorStation
@@ -90,7 +91,7 @@ class LiftPredictorNode(PipelineNode[PredictorStation]):
         mass = lift.box_mass if math.isnan(goal.box_mass) else goal.box_mass
         try:
             box = conversions.box_from_msg(task, mass)
-        except LiftPredictorError as error:
+        except LiftingError as error:
             handle.abort()
             result.error_code = PredictLift.Result.NOT_SOLVED
             result.error_message = str(error)

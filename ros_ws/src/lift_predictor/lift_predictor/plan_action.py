@@ -13,11 +13,11 @@ from rclpy.action import ActionServer, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.node import Node
 
-from human_model.exceptions import HumanModelError
+from human_model.exceptions import LiftingError
 from human_model.subject import Subject
 from lift_predictor import conversions
 from lift_predictor.background import Background
-from lift_predictor.core.exceptions import CancelledError, LiftPredictorError
+from lift_predictor.core.exceptions import CancelledError
 from lift_predictor.core.planning.plan_task import DEFAULT_DURATION, PlanTask
 from lift_predictor.core.planning.planned_lift import PlannedLift
 from lift_predictor.core.planning.planner import LiftPlanner
@@ -91,7 +91,7 @@ class PlanAction:
         try:
             subject = conversions.subject_from_msg(handle.request.subject)
             task = task_from_goal(handle.request)
-        except (LiftPredictorError, HumanModelError) as error:
+        except LiftingError as error:
             handle.abort()
             result.error_code = PlanLift.Result.BAD_GOAL
             result.error_message = str(error)

@@ -97,8 +97,9 @@ def test_more_weight_on_the_effort_means_less_effort_and_a_lighter_box(solve) ->
     assert all(result.report.ok for result in curve)
     efforts = [result.effort for result in curve]
     masses = [result.mass for result in curve]
-    assert efforts == sorted(efforts, reverse=True)
-    assert masses == sorted(masses, reverse=True)
+    # The last two lift next to nothing: they are equal but for the tolerance of the solver.
+    assert np.all(np.diff(efforts) <= 1e-5)
+    assert np.all(np.diff(masses) <= 1e-5)
     assert curve[-1].mass == pytest.approx(0.0, abs=1e-3)
 
 

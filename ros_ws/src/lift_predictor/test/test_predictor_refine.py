@@ -2,7 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Lifts that can be done are not refused for what happens between the nodes, or for a bad start.
 
-All are random planned lifts that were refused once although they can be done.
+All are random planned lifts that were refused once although they can be done.  Since a lift
+begins and ends at rest and its box has its true size, two of the persons could not hold their
+start postures: they are stronger here than they were (-0.89 and -0.81).  The squat can be done
+only by a lift that is under way at its ends.
 """
 
 from __future__ import annotations
@@ -34,7 +37,7 @@ BETWEEN_NODES = {
         ),
     ),
     'two limits at once': (
-        Subject('b', 'female', 85.1123, 1.72957, 46.481, -0.893964),
+        Subject('b', 'female', 85.1123, 1.72957, 46.481, 2.0),
         PlanTask(
             'crate', 5.86563, (0.285578, 0.497971, 0.231471), (0.556846, 0.0, 0.115736),
             (0.36901, 0.0, 0.579342), (0.0, 0.0), 2.0, 'semi_squat',
@@ -50,7 +53,7 @@ HARD_TO_FIND = {
         ),
     ),
     'stoop': (
-        Subject('d', 'female', 90.4552, 1.923589, 45.5194, -0.809735),
+        Subject('d', 'female', 90.4552, 1.923589, 45.5194, 1.0),
         PlanTask(
             'crate', 3.667134, (0.212476, 0.309834, 0.372631), (0.479011, 0.0, 0.670389),
             (0.360435, 0.0, 1.30977), (0.0, 0.0), 1.32, 'stoop',
@@ -74,7 +77,11 @@ def test_a_lift_that_can_be_done_is_found_and_holds_between_the_nodes(
 ) -> None:
     subject, task = (BETWEEN_NODES | HARD_TO_FIND)[case]
     plan = plan_of(subject, task)
-    solver = own_predictor.sagittal
+    predictor = (
+        LiftPredictor(PredictorOptions(static_ends='velocity')) if case == 'squat'
+        else own_predictor
+    )  # fmt: skip
+    solver = predictor.sagittal
     predicted = solver.solve(plan.task, solver.model.plan_starts(plan, 4))
     assert predicted.report.ok, predicted.report.message
     assert predicted.box_mass == pytest.approx(task.box_mass)
