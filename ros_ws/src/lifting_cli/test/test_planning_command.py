@@ -92,7 +92,7 @@ def test_bad_field_is_named_with_its_file(tmp_path: Path, capsys) -> None:
     path = changed(tmp_path, 'stature: 1.69', 'stature: 169')
     assert main(['predict', str(path), '--output', str(tmp_path / 'out')]) == 1
     error = capsys.readouterr().err
-    assert error.startswith(f'lift predict: {path}: subject: subject.stature: 169')
+    assert error.startswith(f'lift predict: {path}: subject.stature: 169')
     assert not (tmp_path / 'out').exists()
 
 
