@@ -311,12 +311,12 @@ def test_box_that_nobody_can_lift(broken):
 
 
 def test_target_out_of_reach(broken):
-    """The box ends at 2.9 m: nobody of 1.69 m gets there."""
+    """The box is to end at 2.9 m: nobody of 1.69 m gets there."""
 
     def change(topic, _, message):
-        if topic == 'box/pose':
-            place = message.pose.position
-            place.z = 0.06 + 3.0 * (place.z - 0.06)
+        if topic == 'task':
+            end = message.box_end
+            end.x, end.y, end.z = 0.4, 0.0, 2.9
         return message
 
     found = broken(change)

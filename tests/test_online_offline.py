@@ -119,8 +119,10 @@ def test_peaks_of_l5_s1_are_equal(both, source):
     for results in both:
         (lift,) = results.lifts.values()
         load = lift.blocks['spine_load', source]
-        assert not np.any(load.status)
-        peaks.append([np.max(load.compression), np.max(load.anterior_shear)])
+        good = load.status == 0
+        # Muscles are too weak for a few samples of the predicted lift: these have no peak.
+        assert np.count_nonzero(good) > 0.95 * good.size
+        peaks.append([np.max(load.compression[good]), np.max(load.anterior_shear[good])])
     assert min(peaks[0]) > 100.0
     assert peaks[0] == peaks[1]
 
