@@ -39,7 +39,7 @@ STATIONS = {
 }
 #: Share of the 200 000: by what a message costs.
 LONG = {'tracker': 100_000, 'analyzer': 30_000, 'predictor': 5_000, 'monitor': 65_000}
-SHORT = {'tracker': 1500, 'analyzer': 500, 'predictor': 150, 'monitor': 1500}
+SHORT = {'tracker': 1500, 'analyzer': 250, 'predictor': 100, 'monitor': 1500}
 NUMBERS = (np.nan, np.inf, -np.inf, 1e308, -1e308, 1e-308, -1.0, 0.0, 1e9)
 WHOLE = (0, 1, -1, 255, 2**16 - 1, 2**31 - 1, -(2**31), 2**32 - 1)
 TEXTS = (

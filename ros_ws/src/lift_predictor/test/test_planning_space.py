@@ -141,6 +141,7 @@ def test_candidates_for_the_feet_are_allowed_and_differ() -> None:
     assert not allowed(Feet(-FARTHEST, 0.0), task)
 
 
+@pytest.mark.long  # twenty seconds
 def test_free_feet_are_the_best_that_were_tried(planner, subject, monkeypatch) -> None:
     monkeypatch.setattr('lift_predictor.core.models.spatial.planned.feet.HALVINGS', -1)
     told = []
@@ -186,6 +187,7 @@ def test_too_high_a_shelf_at_the_side_gives_a_lower_one(planner, subject, monkey
     assert np.arctan2(reached[1], reached[0]) == pytest.approx(np.pi / 4.0, abs=1e-2)
 
 
+@pytest.mark.long  # twenty seconds
 def test_too_heavy_a_box_at_the_side_names_a_limit_and_a_mass(planner, subject) -> None:
     planned = planner.plan(subject, replace(TASK, box_mass=90.0))
     assert planned.report.status is SolveStatus.PREDICTOR_INFEASIBLE
