@@ -102,6 +102,7 @@ def test_largest_mass_is_heavier_than_what_can_be_lifted_with_less_effort(
     assert summarise(too_heavy) is None
 
 
+@pytest.mark.long  # half a minute; lift predict and a bad recording have shorter tests of it
 def test_out_of_reach_is_a_report(planner, subject) -> None:
     high = planner.plan(subject, replace(TASK, end=(0.55, 0.0, 2.4)))
     assert high.report.status is SolveStatus.PREDICTOR_UNREACHABLE

@@ -62,6 +62,7 @@ def test_plan_holds_the_box_at_both_places_and_is_checked(free) -> None:
     )
 
 
+@pytest.mark.long  # a quarter of a minute
 def test_right_side_is_the_mirror_image(planner) -> None:
     """For a woman: the published trunk rotation of men differs by 1 % between the sides."""
     woman = Subject(pseudonym='w', sex='female', mass=60.0, stature=1.65, age=31.0)

@@ -49,6 +49,7 @@ def test_all_starts_end_at_the_same_optimum(outcome, mass) -> None:
     assert max(objectives) <= min(objectives) * 1.001
 
 
+@pytest.mark.long  # IPOPT from many starts: a quarter of a minute
 @pytest.mark.parametrize('mass', (7.0, 12.0))
 def test_random_starts_find_nothing_better(outcome, predictor, person, mass) -> None:
     """Five random starts of IPOPT as the reference: not more than 0.1 % above the best of them."""

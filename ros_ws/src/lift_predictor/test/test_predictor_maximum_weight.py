@@ -133,6 +133,7 @@ def test_the_tie_break_costs_next_to_nothing(predictor, open_task, solve) -> Non
     assert first.box_mass <= pure.box_mass * (1.0 + 1e-6)
 
 
+@pytest.mark.long  # IPOPT from many starts: a quarter of a minute
 def test_random_starts_find_no_heavier_box(predictor, open_task, solve) -> None:
     task, starts = open_task
     person = task.person
