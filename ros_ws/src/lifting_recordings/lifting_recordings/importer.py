@@ -25,7 +25,12 @@ from lifting_recordings.alignment import ConventionOptions, align
 from lifting_recordings.bag_writer import START_TIME_NS, BagWriter, in_order
 from lifting_recordings.box_pose import box_poses
 from lifting_recordings.c3d_files import read_c3d
-from lifting_recordings.exceptions import BagError, FileFormatError, SubjectFileError
+from lifting_recordings.exceptions import (
+    BagError,
+    ConventionError,
+    FileFormatError,
+    SubjectFileError,
+)
 from lifting_recordings.messages import MarkerCalibration, subject_message, task_message
 from lifting_recordings.opensim_forces import read_trc_and_forces
 from lifting_recordings.plate_assignment import Carried
@@ -202,12 +207,18 @@ def write_bag(options: ImportOptions, read: ReadRecording) -> ImportReport:
     entry, recording = read.entry, read.recording
     counts: dict[str, int] = {}
     origin_ns = options.start_time_ns - round(recording.time[0] * 1e9)
-    source = ' '.join((f'Imported from {recording.path.name}.', *recording.statements))
-    position, quaternion = (
-        box_poses(recording.names, recording.markers, entry.recording.box_markers)
-        if entry.recording.box_markers
-        else (None, None)
-    )
+    statements = recording.statements
+    position, quaternion = None, None
+    if entry.recording.box_markers:
+        try:
+            position, quaternion, misfits = box_poses(
+                recording.names, recording.markers, entry.recording.box_markers
+            )
+        except ConventionError as error:
+            raise ConventionError(f'{entry.path}: {error}') from error
+        if misfits:
+            statements += (f'Box: no pose in {misfits} frames, whose markers do not fit the box.',)
+    source = ' '.join((f'Imported from {recording.path.name}.', *statements))
     with BagWriter(options.output, compress=options.compress) as writer:
         streams = [_latched(writer, options.start_time_ns, entry, source, read.calibration)]
         streams.append(marker_stream(writer, origin_ns, recording))
@@ -225,7 +236,7 @@ def write_bag(options: ImportOptions, read: ReadRecording) -> ImportReport:
             counts[topic] = counts.get(topic, 0) + 1
     return ImportReport(
         bag=options.output,
-        statements=recording.statements,
+        statements=statements,
         messages=counts,
         duration=float(recording.time[-1] - recording.time[0]),
     )

@@ -51,6 +51,10 @@ from lifting_recordings.exceptions import SubjectFileError
 #: Joints whose width replaces a medial marker, and limits of a width.
 _WIDE_JOINTS = ('knee', 'ankle', 'elbow')
 _JOINT_WIDTH = (0.03, 0.2, 'm')
+#: Sides of a box that two hands lift, and the distance of a marker from its surface (engineering
+#: choices: they find centimetres and millimetres written for metres) [m].
+_BOX_SIDE = (0.01, 2.0)
+_BOX_MARKER_REACH = 0.15
 
 #: Where the plates are: as the file says, or as quiet standing says (see `plate_registration`).
 AS_RECORDED, QUIET_STANDING = 'as_recorded', 'quiet_standing'
@@ -111,6 +115,17 @@ def read_subject_file(path: str | Path) -> SubjectFile:
     task = _task(whole.section('task'))
     recording = _recording(whole.section('recording', {}))
     whole.finish()
+    for name, place in recording.box_markers.items():
+        far = [
+            abs(x) > side / 2 + _BOX_MARKER_REACH
+            for x, side in zip(place, task.box.size, strict=True)
+        ]
+        if task.box.mass > 0.0 and any(far):
+            raise SubjectFileError(
+                f'{path}: recording.box_markers.{name}: {list(place)} m is more than '
+                f'{_BOX_MARKER_REACH:g} m outside of the box of task.box_size '
+                f'{list(task.box.size)} m: write metres, measured from the centre of the box'
+            )
     return SubjectFile(path, subject, source, task, recording, joint_widths)
 
 
@@ -137,6 +152,10 @@ def _task(section: _Section) -> Task:
     size = section.triple('box_size', *(() if mass > 0.0 else ((0.0, 0.0, 0.0),)))
     if mass > 0.0 and min(size) <= 0.0:
         raise section.error('box_size', f'{size} is not positive, but box_mass is {mass:g} kg')
+    if mass > 0.0 and not all(_BOX_SIDE[0] <= side <= _BOX_SIDE[1] for side in size):
+        raise section.error(
+            'box_size', f'{size} m: each side is between {_BOX_SIDE[0]:g} and {_BOX_SIDE[1]:g} m'
+        )
     start, end = (
         section.triple(key) if key in section else None for key in ('box_start', 'box_end')
     )

@@ -88,3 +88,29 @@ def test_no_yaml_and_no_file(tmp_path):
     path.write_text('just words')
     with pytest.raises(SubjectFileError, match="file: a mapping is needed, found 'just words'"):
         read_subject_file(path)
+
+
+BOX = """
+subject: {pseudonym: S1, sex: male, mass: 70.0, stature: 1.75, age: 30}
+task: {task_id: a, box_mass: 12.0, box_size: [0.3, 0.4, 0.2], coupling: good,
+       lifts_per_minute: 1.0, lifts_per_day: 10, duration_hours: 1.0}
+recording:
+  box_markers: {B1: [0.15, 0.2, 0.1], B2: [-0.15, 0.2, 0.1], B3: [0.15, -0.2, 0.1]}
+"""
+
+
+@pytest.mark.parametrize(
+    ('old', 'new', 'words'),
+    [
+        ('[0.3, 0.4, 0.2]', '[30, 40, 20]', r'task\.box_size.*each side is between 0\.01 and 2 m'),
+        ('B1: [0.15, 0.2, 0.1]', 'B1: [15, 20, 10]', r'box_markers\.B1: .*write metres'),
+        ('B3: [0.15, -0.2', 'B3: [0.15, -0.4', r'box_markers\.B3: .*outside of the box'),
+    ],
+)
+def test_box_in_other_units_is_refused(tmp_path, old, new, words):
+    path = tmp_path / 'subject.yaml'
+    path.write_text(BOX)
+    assert len(read_subject_file(path).recording.box_markers) == 3
+    path.write_text(BOX.replace(old, new))
+    with pytest.raises(SubjectFileError, match=words):
+        read_subject_file(path)
