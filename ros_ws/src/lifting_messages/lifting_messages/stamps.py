@@ -42,7 +42,7 @@ def stamp_of(data: bytes, name: str) -> int:
 def _stamp_begin(name: str) -> int | None:
     """Return the place of the stamp in serialised messages of a type; None without one."""
     kind, content = _first_field(name)
-    if (kind, content) == (Nodetype.NAME, _HEADER):
+    if kind == Nodetype.NAME and content in (_HEADER, _TIME):
         return _HEAD
     # A list of stamped messages, such as transforms.
     if kind == Nodetype.SEQUENCE and content[0][0] == Nodetype.NAME:

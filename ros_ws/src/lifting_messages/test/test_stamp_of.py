@@ -33,7 +33,9 @@ def transforms(count):
 
 
 @pytest.mark.parametrize('little', [True, False])
-@pytest.mark.parametrize('make', [stamped_point, lambda: transforms(2)], ids=['header', 'list'])
+@pytest.mark.parametrize(
+    'make', [stamped_point, header, lambda: transforms(2)], ids=['header', 'itself', 'list']
+)
 def test_stamp_of_a_message_or_of_its_first_part(make, little):
     message = make()
     data = bytes(STORE.serialize_cdr(message, message.__msgtype__, little_endian=little))
