@@ -30,6 +30,10 @@ TASK = PlanTask(
 ORIGIN = Feet(0.0, 0.0)
 
 
+# Whole plans in space take several seconds each: two minutes together.
+pytestmark = pytest.mark.long
+
+
 @pytest.fixture(scope='module')
 def planner() -> LiftPlanner:
     return LiftPlanner(LiftPredictor())
@@ -62,7 +66,6 @@ def test_plan_holds_the_box_at_both_places_and_is_checked(free) -> None:
     )
 
 
-@pytest.mark.long  # a quarter of a minute
 def test_right_side_is_the_mirror_image(planner) -> None:
     """For a woman: the published trunk rotation of men differs by 1 % between the sides."""
     woman = Subject(pseudonym='w', sex='female', mass=60.0, stature=1.65, age=31.0)
@@ -142,7 +145,6 @@ def test_candidates_for_the_feet_are_allowed_and_differ() -> None:
     assert not allowed(Feet(-FARTHEST, 0.0), task)
 
 
-@pytest.mark.long  # twenty seconds
 def test_free_feet_are_the_best_that_were_tried(planner, subject, monkeypatch) -> None:
     monkeypatch.setattr('lift_predictor.core.models.spatial.planned.feet.HALVINGS', -1)
     told = []
@@ -188,7 +190,6 @@ def test_too_high_a_shelf_at_the_side_gives_a_lower_one(planner, subject, monkey
     assert np.arctan2(reached[1], reached[0]) == pytest.approx(np.pi / 4.0, abs=1e-2)
 
 
-@pytest.mark.long  # twenty seconds
 def test_too_heavy_a_box_at_the_side_names_a_limit_and_a_mass(planner, subject) -> None:
     planned = planner.plan(subject, replace(TASK, box_mass=90.0))
     assert planned.report.status is SolveStatus.PREDICTOR_INFEASIBLE
