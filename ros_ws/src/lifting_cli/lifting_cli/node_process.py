@@ -17,6 +17,7 @@ from pathlib import Path
 
 from lifting_cli.graph_errors import NodeDiedError
 from lifting_cli.interruption import SignalMask
+from lifting_node.discovery import STAY_ON_MACHINE
 
 #: Order of start: what computes longest before it is ready comes first.
 NODES = ('muscle_analyzer', 'lift_predictor', 'motion_tracker', 'injury_monitor')
@@ -109,8 +110,9 @@ def discovery() -> dict[str, str]:
     late. Variables count when ROS starts in a process.
     """
     values = {}
-    if 'ROS_AUTOMATIC_DISCOVERY_RANGE' not in os.environ:
-        values['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+    name, default = STAY_ON_MACHINE
+    if name not in os.environ:
+        values[name] = default
     if not any(name in os.environ for name in PROFILE_VARIABLES):
         values[PROFILE_VARIABLES[0]] = str(DISCOVERY_PROFILE)
     return values

@@ -63,14 +63,8 @@ def to_seconds(stamp: Message) -> float:
 
 def to_stamp(seconds: float) -> Message:
     """Return seconds [s] as a stamp, to the microsecond: a double holds no more of an epoch."""
-    sec, nanosec = split(seconds)
-    return make('builtin_interfaces/Time', sec=sec, nanosec=nanosec)
-
-
-def split(seconds: float) -> tuple[int, int]:
-    """Return whole seconds and nanoseconds of a stamp as `to_stamp` makes it."""
-    microseconds = round(seconds * 1_000_000)
-    return microseconds // 1_000_000, microseconds % 1_000_000 * 1000
+    sec, microseconds = divmod(round(seconds * 1_000_000), 1_000_000)
+    return make('builtin_interfaces/Time', sec=sec, nanosec=1000 * microseconds)
 
 
 def header(time: float, frame_id: str = '') -> Message:

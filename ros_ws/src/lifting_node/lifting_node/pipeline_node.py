@@ -280,8 +280,10 @@ class PipelineNode(LifecycleNode, Generic[S]):
     def _problems(self, errors: int) -> list[str]:
         """Return the missing inputs, and the last error while it is recent."""
         now = time.monotonic()
-        if errors != self._errors:
-            self._errors, self._error_came = errors, now
+        if errors > self._errors:
+            self._error_came = now
+        # A station that was configured again counts from 0.
+        self._errors = errors
         problems = self._watch.problems() if self.active else []
         if self._station is not None and now - self._error_came < ERROR_SHOWN:
             problems.append(self._station.last_error)

@@ -7,7 +7,6 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable
-from typing import Final
 
 import rclpy
 from rclpy.executors import ExternalShutdownException
@@ -16,9 +15,7 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 
 from lifting_messages.exceptions import ParameterError
-
-#: How far away a process may be to discover this one; nodes stay on their machine by default.
-RANGE: Final = 'ROS_AUTOMATIC_DISCOVERY_RANGE'
+from lifting_node.discovery import STAY_ON_MACHINE
 
 
 def run_node(factory: Callable[[], Node], args: list[str] | None = None) -> None:
@@ -43,7 +40,7 @@ def run_node(factory: Callable[[], Node], args: list[str] | None = None) -> None
     SystemExit
         With code 2 if a parameter was refused.
     """
-    os.environ.setdefault(RANGE, 'LOCALHOST')
+    os.environ.setdefault(*STAY_ON_MACHINE)
     rclpy.init(args=args)
     try:
         node = factory()

@@ -9,7 +9,10 @@ import pytest
 pytest.importorskip('rclpy', reason='rclpy is not installed')
 
 from lifting_messages.exceptions import ParameterError
-from lifting_node.run import RANGE, run_node
+from lifting_node.discovery import STAY_ON_MACHINE
+from lifting_node.run import run_node
+
+RANGE = STAY_ON_MACHINE[0]
 
 
 @pytest.mark.parametrize(('given', 'used'), [(None, 'LOCALHOST'), ('SUBNET', 'SUBNET')])
