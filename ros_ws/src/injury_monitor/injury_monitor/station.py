@@ -6,9 +6,9 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from time import perf_counter
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from human_model.exceptions import LiftingError
 from injury_monitor import conversions, topics
@@ -20,7 +20,7 @@ from injury_monitor.core.lift_parts import MEASURED, PREDICTED, LiftCollector, L
 from injury_monitor.core.monitor import InjuryMonitor
 from lifting_messages import Message
 from lifting_messages.stamps import to_seconds
-from lifting_messages.station import Log, Output, Station
+from lifting_messages.station import Output, Station
 from lifting_messages.topics import Quality, Topic
 
 
@@ -46,14 +46,8 @@ class MonitorStation(Station):
     INPUTS = topics.INPUTS
     OUTPUTS: ClassVar[tuple[Topic, ...]] = topics.OUTPUTS
 
-    def __init__(
-        self,
-        values: Mapping[str, Any] | None = None,
-        name: str = '',
-        log: Log | None = None,
-        clock: Callable[[], float] | None = None,
-    ) -> None:
-        super().__init__(values, name, log, clock)
+    def prepare(self) -> None:
+        """Create the pipeline and the functions of the inputs."""
         self.handlers = {
             'subject': self._on_subject,
             'task': self._on_task,

@@ -5,9 +5,9 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 from time import perf_counter
-from typing import Any, Final
+from typing import Final
 
 from human_model.exceptions import LiftingError
 from human_model.motion import Lift
@@ -16,7 +16,7 @@ from lift_predictor import conversions, topics
 from lift_predictor.core.options import PredictorOptions
 from lift_predictor.core.predictor import LiftPredictor
 from lifting_messages import Message
-from lifting_messages.station import Log, Output, Station
+from lifting_messages.station import Output, Station
 
 #: Lifts kept until subject and task are known, and afterwards for further predictions.
 KEPT_LIFTS: Final = 100
@@ -43,14 +43,8 @@ class PredictorStation(Station):
     INPUTS = topics.INPUTS
     OUTPUTS = topics.OUTPUTS
 
-    def __init__(
-        self,
-        values: Mapping[str, Any] | None = None,
-        name: str = '',
-        log: Log | None = None,
-        clock: Callable[[], float] | None = None,
-    ) -> None:
-        super().__init__(values, name, log, clock)
+    def prepare(self) -> None:
+        """Create the pipeline and the functions of the inputs."""
         self.handlers = {
             'subject': self._on_subject,
             'task': self._on_task,

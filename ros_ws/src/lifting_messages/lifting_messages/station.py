@@ -51,8 +51,9 @@ class NoLog:
 class Station:
     """Messages of the input topics to messages of the output topics.
 
-    A subclass sets `PACKAGE`, `INPUTS` and `OUTPUTS` and fills `handlers`. Results of whole lifts
-    that take long are computed in `work`, in bounded steps, while live samples come in between.
+    A subclass sets `PACKAGE`, `INPUTS` and `OUTPUTS` and fills `handlers` in `prepare`. Results
+    of whole lifts that take long are computed in `work`, in bounded steps, while live samples
+    come in between.
 
     Parameters
     ----------
@@ -96,6 +97,10 @@ class Station:
         self.last_error = ''
         self.has_subscribers: Callable[[str], bool] = lambda _: True
         self.has_publishers: Callable[[str], bool] = lambda _: False
+        self.prepare()
+
+    def prepare(self) -> None:
+        """Create what the parameters ask for, and fill `handlers`; the constructor calls it."""
 
     def warm_up(self) -> None:
         """Load what the first messages need: models and compiled functions."""

@@ -5,8 +5,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any, Final
+from collections.abc import Iterator, Sequence
+from typing import Final
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from lifting_messages.conversions import (
     subject_from_msg,
 )
 from lifting_messages.stamps import to_stamp
-from lifting_messages.station import Log, Output, Station
+from lifting_messages.station import Output, Station
 from lifting_visualization import conversions, topics
 from lifting_visualization.core.drawing import SpineScale
 from lifting_visualization.core.shapes import Shape
@@ -50,14 +50,8 @@ class VisualizerStation(Station):
     INPUTS = topics.INPUTS
     OUTPUTS = topics.OUTPUTS
 
-    def __init__(
-        self,
-        values: Mapping[str, Any] | None = None,
-        name: str = '',
-        log: Log | None = None,
-        clock: Callable[[], float] | None = None,
-    ) -> None:
-        super().__init__(values, name, log, clock)
+    def prepare(self) -> None:
+        """Create the pipeline and the functions of the inputs."""
         self.handlers = {
             'subject': self._on_subject,
             'task': self._on_task,
@@ -81,7 +75,7 @@ class VisualizerStation(Station):
                 prefix=self._prefix(),
             )
         )
-        self._time = clock or time.monotonic
+        self._time = self.clock or time.monotonic
         self._transforms: bool = self.values['transforms']
         # Last stamp of live motion and its arrival by the clock of the machine.
         self._last = (0.0, self._time())

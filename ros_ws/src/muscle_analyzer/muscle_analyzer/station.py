@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 from collections import OrderedDict, deque
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, Final
 
@@ -14,7 +14,7 @@ from human_model.exceptions import LiftingError
 from human_model.named_subjects import named_subject, subject_names
 from human_model.subject import Subject
 from lifting_messages import Message
-from lifting_messages.station import Log, Output, Station
+from lifting_messages.station import Output, Station
 from lifting_messages.topics import Quality
 from muscle_analyzer import conversions, topics
 from muscle_analyzer.core.loads.analysis import MuscleAnalysis
@@ -61,14 +61,8 @@ class AnalyzerStation(Station):
     INPUTS = topics.INPUTS
     OUTPUTS = topics.OUTPUTS
 
-    def __init__(
-        self,
-        values: Mapping[str, Any] | None = None,
-        name: str = '',
-        log: Log | None = None,
-        clock: Callable[[], float] | None = None,
-    ) -> None:
-        super().__init__(values, name, log, clock)
+    def prepare(self) -> None:
+        """Create the pipeline and the functions of the inputs."""
         self.handlers = {
             'subject': self._on_subject,
             'task': self._on_task,
